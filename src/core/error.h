@@ -1,0 +1,105 @@
+// Errors that people read: what went wrong, where (file:line:column), and what would have been right.
+//
+// Assertions are for bugs; exceptions for bad input (caught once, in main); values where failing is normal.
+// Nothing in the library ends the process.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lampyris {
+
+// What the process returns; a contract with scripts.
+enum class ExitCode : int { kDone = 0, kBadInput = 1, kMachineCannot = 2, kInterrupted = 130 };
+
+class Error : public std::runtime_error {
+ public:
+    Error(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+    ExitCode code() const { return code_; }
+
+ private:
+    ExitCode code_;
+};
+
+// The scene or the arguments are wrong (exit code 1). The message is complete: it may hold several located errors.
+class InputError : public Error {
+ public:
+    explicit InputError(const std::string& message) : Error(ExitCode::kBadInput, message) {}
+};
+
+// The machine cannot: no device, no memory, disk full, device lost (exit code 2).
+class MachineError : public Error {
+ public:
+    explicit MachineError(const std::string& message) : Error(ExitCode::kMachineCannot, message) {}
+};
+
+// A place in a source text: a file known to Sources, and a byte offset in it. Line and column are computed when asked for.
+struct Location {
+    static constexpr uint32_t kNoFile = 0xffffffffu;
+    uint32_t file = kNoFile;
+    uint64_t offset = 0;
+    bool known() const { return file != kNoFile; }
+};
+
+// The texts that were read, kept so that a Location can be shown as line, column and excerpt.
+// Text is kept by view: the owner (a mapped file, a string) must outlive Sources, or hand over a string to keep.
+class Sources {
+ public:
+    uint32_t add(std::string name, std::string_view text);
+    uint32_t add_owned(std::string name, std::string text);
+    struct Place {
+        std::string file;
+        uint64_t line = 0;    // from 1
+        uint64_t column = 0;  // from 1, in bytes
+    };
+    Place place(Location location) const;
+    std::string describe(Location location) const;  // "file:line:column"
+    std::string excerpt(Location location) const;   // the line, a newline, and a caret below the place; long lines are cut
+
+ private:
+    struct Source {
+        std::string name;
+        std::string owned;
+        std::string_view text;
+    };
+    std::deque<Source> sources_;
+};
+
+// Collects the errors and warnings of one scene, so that they are reported together.
+class Diagnostics {
+ public:
+    explicit Diagnostics(const Sources& sources) : sources_(&sources) {}
+    // `hint` says what would have been right ("did you mean ...", "valid types are ..."); it ends the message.
+    void error(Location location, std::string message, std::string hint = {});
+    void warning(Location location, std::string message, std::string hint = {});
+    // A known part of the format that Lampyris does not simulate: an error, or, with skip_unsupported, a warning that is
+    // remembered for the statistics.
+    void unsupported(Location location, std::string what, std::string hint = {});
+    void set_skip_unsupported(bool skip) { skip_unsupported_ = skip; }
+
+    bool has_errors() const { return error_count_ > 0; }
+    // Throws InputError with every error so far (at most kMaxShown in full, then a count).
+    void throw_if_errors() const;
+    const std::vector<std::string>& warnings() const { return warnings_; }          // formatted, with location
+    const std::vector<std::string>& unsupported_list() const { return skipped_; }   // "what (file:line)"
+    static constexpr size_t kMaxShown = 20;
+
+ private:
+    std::string format(const char* severity, Location location, const std::string& message, const std::string& hint) const;
+    const Sources* sources_;
+    std::vector<std::string> errors_, warnings_, skipped_;
+    size_t error_count_ = 0;
+    bool skip_unsupported_ = false;
+};
+
+// The nearest of `candidates` to `word` by edit distance, as " (did you mean \"x\"?)", or empty where none is near.
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
+// "a, b, c" in the order given.
+std::string list_of(const std::vector<std::string>& candidates);
+
+}  // namespace lampyris

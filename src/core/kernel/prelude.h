@@ -1,0 +1,40 @@
+// The kernel dialect: the common subset of GLSL and C++20 in which every kernel is written once.
+//
+// glslang compiles kernel files to SPIR-V; the C++ compiler builds the same files inside a class template
+// (`template <uint kEffects> struct Kernel { ... };`, see cpp_kernel.h), where buffers become member pointers.
+// This is the only kernel file that asks which of the two compilers reads it. docs/kernel-dialect.md explains the rules.
+#ifndef LAMPYRIS_KERNEL_PRELUDE
+#define LAMPYRIS_KERNEL_PRELUDE
+
+#ifdef __cplusplus
+// Parameters of functions: IN for structs that are only read, OUT and INOUT for results. Pass vectors and scalars by value.
+#define IN(T) const T&
+#define OUT(T) T&
+#define INOUT(T) T&
+#define CONST static constexpr
+#define FN inline
+// Buffers of the scene (set 0) and of the kernel (set 1): `scene_buffers_` and `kernel_buffers_` are the instance's two tables.
+#define SCENE_RO(binding_, T, name) const T* __restrict name = static_cast<const T*>(scene_buffers_[binding_]);
+#define BUFFER_RO(binding_, T, name) const T* __restrict name = static_cast<const T*>(kernel_buffers_[binding_]);
+#define BUFFER_RW(binding_, T, name) T* __restrict name = static_cast<T*>(kernel_buffers_[binding_]);
+#define HAS(effect) ((kEffects & (effect)) != 0u)
+// The function that runs once per index; one per kernel file.
+#define KERNEL(name) inline void kernel_main(uint index)
+#define ATOMIC_ADD_U32(place, value) atomic_add_u32(&(place), value)
+#define ATOMIC_OR_U32(place, value) atomic_or_u32(&(place), value)
+#else
+#define IN(T) in T
+#define OUT(T) out T
+#define INOUT(T) inout T
+#define CONST const
+#define FN
+#define SCENE_RO(binding_, T, name) layout(std430, set = 0, binding = binding_) readonly restrict buffer name##Block { T name[]; };
+#define BUFFER_RO(binding_, T, name) layout(std430, set = 1, binding = binding_) readonly restrict buffer name##Block { T name[]; };
+#define BUFFER_RW(binding_, T, name) layout(std430, set = 1, binding = binding_) restrict buffer name##Block { T name[]; };
+#define HAS(effect) ((kEffects & (effect)) != 0u)
+#define KERNEL(name) void kernel_main(uint index)
+#define ATOMIC_ADD_U32(place, value) atomicAdd(place, value)
+#define ATOMIC_OR_U32(place, value) atomicOr(place, value)
+#endif
+
+#endif
