@@ -5,7 +5,7 @@ find_package(ZLIB REQUIRED)
 find_package(TBB REQUIRED)
 find_package(embree 3 REQUIRED)
 find_package(OpenImageIO REQUIRED)
-find_package(OpenColorIO REQUIRED)
+find_package(OpenColorIO REQUIRED HINTS /usr/share/cmake)  # Debian puts its file where CMake does not look
 find_package(glm REQUIRED)
 find_package(fmt REQUIRED)
 find_package(spdlog REQUIRED)

@@ -1,0 +1,105 @@
+// A device owns buffers, runs kernels and traces rays. Integrators and tests talk to this interface only: the host schedule
+// is as shared as the kernels are.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lampyris {
+
+struct Scene;
+
+// Memory that kernels see. Host and device meet through upload and download; on devices whose memory the host sees, both
+// are plain copies.
+class Buffer {
+ public:
+    virtual ~Buffer() = default;
+    virtual size_t size() const = 0;  // bytes
+    virtual void upload(const void* data, size_t bytes, size_t offset = 0) = 0;
+    virtual void download(void* data, size_t bytes, size_t offset = 0) const = 0;
+    virtual void fill_zero() = 0;
+};
+using BufferHandle = std::shared_ptr<Buffer>;
+
+// A scene's buffers and acceleration structures on a device.
+class DeviceScene {
+ public:
+    virtual ~DeviceScene() = default;
+};
+using DeviceSceneHandle = std::shared_ptr<DeviceScene>;
+
+// A kernel file with a set of effects, ready to run on a device (compiled, for Vulkan).
+class Kernel {
+ public:
+    virtual ~Kernel() = default;
+};
+using KernelHandle = std::shared_ptr<Kernel>;
+
+struct DeviceStatistics {
+    double build_s = 0;    // acceleration structures
+    double compile_s = 0;  // shaders
+    size_t memory_bytes = 0, peak_memory_bytes = 0;
+    std::map<std::string, double> kernel_s;  // seconds in each kernel, by its file's name
+};
+
+class Device {
+ public:
+    virtual ~Device() = default;
+    virtual std::string backend() const = 0;      // "cpu", "cpu-bvh2", "vulkan"
+    virtual std::string description() const = 0;  // processor or device, driver
+    virtual unsigned threads() const = 0;         // 0 where it has no meaning
+
+    // Throws MachineError where there is no memory for it.
+    virtual BufferHandle create_buffer(size_t bytes, std::string_view name) = 0;
+
+    // Builds acceleration structures and uploads the scene. The scene must outlive the result.
+    virtual DeviceSceneHandle upload(const Scene& scene) = 0;
+
+    // `file` is the kernel's path below its source root ("integrators/path/path.kernel.h"); code for effects outside
+    // `effects` may be left out. `trace` says whether the kernel traces rays or reads the scene (needs a DeviceScene to run).
+    virtual KernelHandle compile(std::string_view file, uint32_t effects) = 0;
+
+    // Runs the kernel for the indices [begin, begin + count), split as the device needs; `buffers[i]` is binding i of set 1.
+    // Returns when it is done. `scene` may be null for kernels that use no scene buffer. Throws MachineError when the device
+    // fails, or when a kernel reports an unfinished loop.
+    virtual void run(const Kernel& kernel, const DeviceScene* scene, std::span<const BufferHandle> buffers, uint32_t begin,
+                     uint32_t count) = 0;
+
+    virtual DeviceStatistics statistics() const = 0;
+};
+
+struct DeviceOptions {
+    std::string device;       // number or part of the name; empty: the first
+    unsigned threads = 0;     // 0: all
+    uint64_t max_memory = 0;  // bytes; 0: no limit
+    std::map<std::string, std::string> settings;  // --set backend.KEY=VALUE
+};
+
+struct DeviceInfo {
+    std::string backend;
+    int index = 0;
+    std::string name, driver;
+    uint64_t memory_bytes = 0;
+    std::map<std::string, std::string> features;
+};
+
+// A backend registers itself: how to make its device, and what devices there are.
+struct BackendRegistration {
+    BackendRegistration(const char* name, const char* summary,
+                        std::function<std::unique_ptr<Device>(const DeviceOptions&)> create,
+                        std::function<std::vector<DeviceInfo>()> list);
+};
+
+// Throws InputError for an unknown backend (with the list), MachineError where it has no device.
+std::unique_ptr<Device> create_device(const std::string& backend, const DeviceOptions& options = {});
+std::vector<std::string> backend_names();
+std::vector<DeviceInfo> list_devices();  // of every backend
+
+}  // namespace lampyris

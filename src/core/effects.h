@@ -1,0 +1,38 @@
+// Only what the scene calls for: the set of effects, each with who asked for it.
+#pragma once
+
+#include "core/kernel_types.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lampyris {
+
+struct EffectRequest {
+    uint32_t effect = 0;   // one bit (kernel::EFFECT_*)
+    std::string asked_by;  // "scene.pbrt:12:1 (Material \"dielectric\")"; the first directive that asks
+};
+
+// A set computed from the description, not a user's switch.
+class Effects {
+ public:
+    void ask(uint32_t effect, const std::string& asked_by);  // the first one to ask is remembered
+    uint32_t mask() const { return mask_; }
+    bool has(uint32_t effect) const { return (mask_ & effect) != 0; }
+    const std::vector<EffectRequest>& requests() const { return requests_; }
+
+ private:
+    uint32_t mask_ = 0;
+    std::vector<EffectRequest> requests_;
+};
+
+struct EffectInfo {
+    uint32_t effect;
+    const char* name;
+    const char* cost;
+};
+// Every effect that Lampyris knows, in order of their bits; generated from core/kernel/effects.h.
+const std::vector<EffectInfo>& known_effects();
+
+}  // namespace lampyris

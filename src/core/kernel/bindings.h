@@ -1,0 +1,22 @@
+// The scene's buffers (set 0), bound once for all kernels. The host's list of them is SceneBuffer in core/scene/scene.h.
+#ifndef LAMPYRIS_KERNEL_BINDINGS
+#define LAMPYRIS_KERNEL_BINDINGS
+
+SCENE_RO(0, SceneRecord, scene)
+SCENE_RO(1, GeometryRecord, geometries)
+SCENE_RO(2, uint, indices)
+SCENE_RO(3, float, positions)
+SCENE_RO(4, float, normals)
+SCENE_RO(5, float, uvs)
+SCENE_RO(6, TransformRecord, transforms)
+SCENE_RO(7, InstanceRecord, instances)
+SCENE_RO(8, MaterialRecord, materials)
+SCENE_RO(9, TextureOp, texture_ops)
+SCENE_RO(10, ImageRecord, images)
+SCENE_RO(11, uint, texels)
+SCENE_RO(12, LightRecord, lights)
+SCENE_RO(13, float, distributions)
+SCENE_RO(14, BvhNode, bvh_nodes)
+SCENE_RO(15, vec4, bvh_triangles)
+
+#endif

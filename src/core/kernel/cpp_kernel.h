@@ -1,0 +1,46 @@
+// The C++ side of the kernel dialect: GLSL's types and functions from GLM, by name. Included by generated units only.
+#pragma once
+
+#include "core/kernel_registry.h"
+#include "core/kernel_types.h"
+
+#include <glm/glm.hpp>
+
+#include <atomic>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+
+namespace lampyris::kernel {
+
+using glm::ivec2;
+using glm::mat3;
+using glm::uvec2;
+using glm::uvec3;
+
+using glm::abs;
+using glm::all;
+using glm::any;
+using glm::ceil;
+using glm::clamp;
+using glm::cross;
+using glm::dot;
+using glm::equal;
+using glm::floor;
+using glm::greaterThan;
+using glm::lessThan;
+using glm::max;
+using glm::min;
+using glm::sqrt;
+
+inline uint floatBitsToUint(float x) { return std::bit_cast<uint>(x); }
+inline float uintBitsToFloat(uint x) { return std::bit_cast<float>(x); }
+inline int floatBitsToInt(float x) { return std::bit_cast<int>(x); }
+inline float intBitsToFloat(int x) { return std::bit_cast<float>(x); }
+inline bool isnan(float x) { return x != x; }
+inline bool isinf(float x) { return abs(x) > 3.4028235e38f; }
+inline void atomic_add_u32(uint* place, uint value) { std::atomic_ref<uint>(*place).fetch_add(value, std::memory_order_relaxed); }
+inline void atomic_or_u32(uint* place, uint value) { std::atomic_ref<uint>(*place).fetch_or(value, std::memory_order_relaxed); }
+
+}  // namespace lampyris::kernel
+#include "core/kernel/prelude.h"

@@ -1,0 +1,180 @@
+// The scene's records as kernels read them: shared by the host, the C++ kernels and GLSL.
+//
+// Members are vec4 and uvec4 only: GLSL's scalar layout has no tail padding, C++ pads, and a shifted read gives NaN.
+// Indices that may be absent hold NONE. Directions and positions are world space unless said; colours are linear Rec.709.
+#ifndef LAMPYRIS_KERNEL_LAYOUT
+#define LAMPYRIS_KERNEL_LAYOUT
+
+CONST uint NONE = 0xffffffffu;
+
+// ---- Geometry --------------------------------------------------------------------------------------------------------
+
+CONST uint GEOMETRY_TRIANGLES = 0u;
+CONST uint GEOMETRY_BILINEAR = 1u;  // patches p00, p10, p01, p11
+CONST uint GEOMETRY_SPHERE = 2u;    // params: radius, zmin, zmax, phimax (radians)
+CONST uint GEOMETRY_DISK = 3u;      // params: height, radius, inner radius, phimax
+CONST uint GEOMETRY_CYLINDER = 4u;  // params: radius, zmin, zmax, phimax
+
+CONST uint GEOMETRY_HAS_NORMALS = 1u;
+CONST uint GEOMETRY_HAS_UVS = 2u;
+CONST uint GEOMETRY_FLIP = 4u;  // ReverseOrientation xor a handedness-swapping transform: the geometric normal turns round
+CONST uint GEOMETRY_REVERSED = 8u;  // ReverseOrientation alone: vertex normals are negated on loading, this tells quadrics
+
+// One record per shape. Triangles and patches are in world space (in object-definition space inside an instanced object);
+// quadrics are in their own space, with a transform.
+struct GeometryRecord {
+    uvec4 data;        // kind, flags, first entry of `indices` (3 a triangle, 4 a patch), first vertex (indices are relative to it)
+    uvec4 ids;         // material, first light (light of primitive i is first + i) or NONE, alpha texture or NONE, transform (quadrics)
+    uvec4 attributes;  // first vertex in `normals`, first vertex in `uvs`, number of primitives, interior medium << 16 | exterior
+    vec4 params;       // see the kinds
+    vec4 alpha;        // x: constant alpha (used where the alpha texture is NONE); below 1 only where EFFECT_ALPHA
+};
+
+// Rows of an affine transform and of its inverse.
+struct TransformRecord {
+    vec4 to0;  // to world (or to the object's definition space)
+    vec4 to1;
+    vec4 to2;
+    vec4 from0;
+    vec4 from1;
+    vec4 from2;
+};
+
+// Instance 0 is the world itself, with the identity.
+struct InstanceRecord {
+    TransformRecord transform;
+    uvec4 data;  // first geometry, number of geometries, root node of its BVH, 1 if the transform swaps handedness
+};
+
+// Binary BVH node that holds both children's boxes (64 bytes). A child is an inner node (index), or a leaf: the sign bit
+// and count << 24 | first primitive (count 1..7 below bit 31 ... 24).
+struct BvhNode {
+    vec4 left_min;   // w: left child's bits
+    vec4 left_max;   // w: right child's bits
+    vec4 right_min;
+    vec4 right_max;
+};
+
+// ---- Materials -------------------------------------------------------------------------------------------------------
+
+CONST uint MATERIAL_INTERFACE = 0u;
+CONST uint MATERIAL_DIFFUSE = 1u;
+CONST uint MATERIAL_CONDUCTOR = 2u;
+CONST uint MATERIAL_DIELECTRIC = 3u;
+CONST uint MATERIAL_THIN_DIELECTRIC = 4u;
+CONST uint MATERIAL_DIFFUSE_TRANSMISSION = 5u;
+CONST uint MATERIAL_COATED_DIFFUSE = 6u;
+CONST uint MATERIAL_COATED_CONDUCTOR = 7u;
+CONST uint MATERIAL_MIX = 8u;
+
+CONST uint MATERIAL_REMAP = 1u;            // roughness is remapped (alpha = sqrt(roughness)) in the kernel, after textures
+CONST uint MATERIAL_USES_REFLECTANCE = 2u; // conductor: color0 is `reflectance`, from which eta = 1 and k follow
+CONST uint MATERIAL_REMAP_COAT = 4u;       // as MATERIAL_REMAP, for the interface's roughness
+CONST uint MATERIAL_ENERGY_COMPENSATION = 8u;
+
+// A slot's value is its constant, or where its texture is not NONE, the texture.
+struct MaterialRecord {
+    uvec4 data;      // kind, flags, bump (displacement) texture or NONE, normal-map image or NONE
+    uvec4 textures;  // textures of color0, color1, color2, of floats.x
+    uvec4 textures2; // textures of floats.y, floats2.x, floats2.y, floats2.z
+    vec4 color0;     // reflectance; conductor: eta or reflectance; w: scale (diffusetransmission)
+    vec4 color1;     // conductor: k; diffusetransmission: transmittance
+    vec4 color2;     // coats: albedo of the medium between the layers
+    vec4 floats;     // roughness u, v (of the base for coatedconductor, of the coat for coateddiffuse); z: eta (dielectrics, coats); w: g
+    vec4 floats2;    // x: thickness of the coat; y, z: roughness u, v of coatedconductor's coat; w: unused
+    uvec4 extra;     // coats: maxdepth, nsamples; mix: the two materials (x, y), amount texture (z; NONE: floats.x)
+};
+
+// ---- Textures --------------------------------------------------------------------------------------------------------
+
+// A texture is a program in postfix order over a stack of colours (floats use all three channels alike), so that a texture
+// of textures needs no recursion: data.x is the operation, and the last operation of a program has data.y & 1.
+CONST uint TEXTURE_CONSTANT = 0u;       // push a
+CONST uint TEXTURE_IMAGE = 1u;          // push image data.z at the mapped uv; a: scale (rgb); data.w & 1: invert
+CONST uint TEXTURE_CHECKERBOARD = 2u;   // pop tex2, tex1; data.w: dimension (2 or 3)
+CONST uint TEXTURE_SCALE = 3u;          // pop scale, tex
+CONST uint TEXTURE_MIX = 4u;            // pop amount, tex2, tex1
+CONST uint TEXTURE_DIRECTION_MIX = 5u;  // pop tex2, tex1; a: direction
+CONST uint TEXTURE_DOTS = 6u;           // pop outside, inside
+CONST uint TEXTURE_STACK = 8u;          // the depth that the host guarantees
+
+CONST uint MAPPING_UV = 0u;           // m0: su, sv, du, dv
+CONST uint MAPPING_SPHERICAL = 1u;    // m0..m2: rows of texture-from-world
+CONST uint MAPPING_CYLINDRICAL = 2u;  // rows
+CONST uint MAPPING_PLANAR = 3u;       // m0: vs, ds; m1: vt, dt; (three-dimensional checkerboard: rows)
+
+struct TextureOp {
+    uvec4 data;   // operation, flags (1: last) | mapping << 8, image, option
+    vec4 a;
+    vec4 m0;
+    vec4 m1;
+    vec4 m2;
+};
+
+CONST uint WRAP_REPEAT = 0u;
+CONST uint WRAP_BLACK = 1u;
+CONST uint WRAP_CLAMP = 2u;
+CONST uint WRAP_OCTAHEDRAL = 3u;
+CONST uint FILTER_POINT = 0u;
+CONST uint FILTER_BILINEAR = 1u;
+CONST uint TEXEL_RGBA8_SRGB = 0u;   // one uint a texel, decoded through the sRGB curve
+CONST uint TEXEL_RGBA8 = 1u;        // one uint a texel, linear
+CONST uint TEXEL_RGBA16F = 2u;      // two uints
+CONST uint TEXEL_RGB32F = 3u;       // three uints
+
+struct ImageRecord {
+    uvec4 data;   // first uint in `texels`, width, height, texel format | wrap << 8 | filter << 16
+    vec4 params;  // x: gamma of an encoding "gamma x" (0: none)
+};
+
+// ---- Lights ----------------------------------------------------------------------------------------------------------
+
+CONST uint LIGHT_TRIANGLE = 0u;
+CONST uint LIGHT_GEOMETRY = 1u;    // a quadric or a bilinear patch: ids say which
+CONST uint LIGHT_POINT = 2u;
+CONST uint LIGHT_SPOT = 3u;
+CONST uint LIGHT_DISTANT = 4u;
+CONST uint LIGHT_INFINITE = 5u;    // constant
+CONST uint LIGHT_INFINITE_IMAGE = 6u;
+CONST uint LIGHT_PROJECTION = 7u;
+CONST uint LIGHT_GONIOMETRIC = 8u;
+
+CONST uint LIGHT_TWO_SIDED = 1u;
+
+// Lights are ordered: the infinite ones first (SceneRecord says how many), so that an escaping ray visits only those.
+struct LightRecord {
+    uvec4 data;      // kind, flags, image or emission texture or NONE, transform (light space) or NONE
+    uvec4 ids;       // area lights: geometry, primitive, instance (0); images: offset of the distribution in `distributions`, width, height
+    vec4 emission;   // rgb: radiance, intensity or irradiance scale; w: the probability of choosing this light
+    vec4 v0;         // triangle: p0, w: area. point, spot, ...: position. distant: direction towards the light, w: unused
+    vec4 v1;         // triangle: p1. spot: axis, w: cosine at which the falloff begins
+    vec4 v2;         // triangle: p2. spot: w: cosine at which it ends. projection: screen bounds min, max
+};
+
+// ---- Camera, film, scene ---------------------------------------------------------------------------------------------
+
+CONST uint CAMERA_PERSPECTIVE = 0u;
+CONST uint CAMERA_ORTHOGRAPHIC = 1u;
+CONST uint PIXEL_FILTER_BOX = 0u;
+CONST uint PIXEL_FILTER_TRIANGLE = 1u;
+CONST uint PIXEL_FILTER_GAUSSIAN = 2u;  // and the other smooth ones: sampled from a table in `distributions`
+
+struct CameraRecord {
+    uvec4 data;   // kind, filter kind, offset of the filter's table in `distributions`, number of its entries per side
+    uvec4 film;   // full resolution x, y, and the crop window's origin x, y
+    vec4 to0;     // rows of world-from-camera (camera space: +x right, +y up, +z forward, as pbrt's)
+    vec4 to1;
+    vec4 to2;
+    vec4 screen;  // raster to camera space at z = 1: x = screen.x + px * screen.z, y = screen.y + py * screen.w
+    vec4 lens;    // x: lens radius, y: focal distance, z: clamp of a sample's largest component (0: none), w: imaging ratio
+    vec4 filtering;  // x, y: radius; z, w: parameters
+};
+
+struct SceneRecord {
+    CameraRecord camera;
+    uvec4 lights;   // number of lights, number of infinite ones, offset of the choosing CDF in `distributions` (count + 1 floats), unused
+    uvec4 counts;   // geometries, instances, root node of the top-level BVH, unused
+    vec4 bounds;    // world's bounding sphere: centre, radius
+};
+
+#endif

@@ -1,0 +1,42 @@
+// What kernels say to each other about rays and surface points.
+#ifndef LAMPYRIS_KERNEL_SURFACE
+#define LAMPYRIS_KERNEL_SURFACE
+
+CONST float INFINITE_DISTANCE = 3.0e38f;
+
+struct Ray {
+    vec3 origin;
+    vec3 direction;  // unit length, except inside instances and quadrics
+};
+
+// The tracer's answer, reduced to the primitive.
+struct Hit {
+    uint instance;
+    uint geometry;
+    uint primitive;
+};
+
+// A point on a surface, in world space.
+struct Surface {
+    vec3 position;
+    vec3 error;     // bound of the absolute rounding error of `position`, per coordinate: rays start outside of it
+    vec3 ng;        // unit geometric normal, on the side that pbrt calls outside (see reference: orientation rules)
+    vec3 ns;        // unit shading normal
+    vec3 dpdu;      // of the surface; the shading tangent is its part orthogonal to ns
+    vec3 dpdv;
+    vec3 dndu;      // change of the shading normal: bump mapping needs it
+    vec3 dndv;
+    vec2 uv;
+    float distance; // along the ray that found it
+    uint instance;
+    uint geometry;
+    uint primitive;
+    uint material;
+    uint light;     // the area light that this primitive is, or NONE
+};
+
+// Radiance flows against the path (from the camera), importance along it (photons): refraction scales only the former.
+CONST uint TRANSPORT_RADIANCE = 0u;
+CONST uint TRANSPORT_IMPORTANCE = 1u;
+
+#endif

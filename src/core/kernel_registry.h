@@ -1,0 +1,52 @@
+// Kernels by name: their text for glslang, their C++ builds for the CPU. Filled by static registration (built in, or when
+// a plugin is loaded); see cmake/LampyrisKernels.cmake.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lampyris {
+
+enum class CpuTracerKind { embree, bvh2 };
+
+// What a ray found: which primitive. Distance and position are recomputed in shared code, so that backends agree to the bit.
+struct TraceHit {
+    uint32_t instance, geometry, primitive;
+};
+
+// The ray tracer that a C++ kernel calls. Rays are half-open: hits with 0 < t < t_max count.
+struct CpuTracer {
+    void* scene = nullptr;
+    bool (*closest)(void* scene, const float origin[3], const float direction[3], float t_max, TraceHit& hit) = nullptr;
+    bool (*occluded)(void* scene, const float origin[3], const float direction[3], float t_max) = nullptr;
+};
+
+struct CpuInvocation {
+    void* const* scene_buffers;
+    void* const* kernel_buffers;
+    const CpuTracer* tracer;
+    uint32_t begin, end;
+};
+
+using CpuKernelFunction = void (*)(const CpuInvocation&);
+
+// A C++ build of a kernel for a set of effects; registers itself.
+struct CpuKernelVariant {
+    CpuKernelVariant(const char* file, CpuTracerKind tracer, uint32_t effects, CpuKernelFunction run);
+};
+
+// A kernel file's or header's text; registers itself.
+struct KernelText {
+    KernelText(const char* file, std::string_view text);
+};
+
+// The text of a registered file ("core/kernel/prelude.h"); nullptr where there is none.
+const std::string_view* find_kernel_text(std::string_view file);
+std::vector<std::string> kernel_text_files();
+
+// The C++ build with the fewest effects that has all of `effects`. Throws std::logic_error for an unknown kernel.
+CpuKernelFunction find_cpu_kernel(std::string_view file, CpuTracerKind tracer, uint32_t effects);
+
+}  // namespace lampyris

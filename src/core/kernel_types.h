@@ -1,0 +1,20 @@
+// The kernels' records (core/kernel/layout.h) for host code, in namespace lampyris::kernel.
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include <cstdint>
+
+namespace lampyris::kernel {
+using uint = uint32_t;
+using glm::uvec4;
+using glm::vec2;
+using glm::vec3;
+using glm::vec4;
+#define CONST inline constexpr
+#include "core/kernel/effects.h"
+#include "core/kernel/layout.h"
+#undef CONST
+}  // namespace lampyris::kernel

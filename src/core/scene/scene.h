@@ -1,0 +1,47 @@
+// The scene as flat arrays, ready for any backend, and the effects that it calls for.
+#pragma once
+
+#include "core/effects.h"
+#include "core/kernel_types.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace lampyris {
+
+// A geometry set that is instanced as one: the world (set 0) or an object.
+struct GeometrySet {
+    uint32_t first_geometry = 0, geometry_count = 0;
+};
+
+// Arrays are those of core/kernel/bindings.h, element for element (layouts in core/kernel/layout.h).
+struct Scene {
+    kernel::SceneRecord record{};
+    std::vector<kernel::GeometryRecord> geometries;
+    std::vector<uint32_t> indices;   // 3 a triangle, 4 a patch; relative to the geometry's first vertex
+    std::vector<float> positions;    // 3 a vertex; at least 16 readable bytes past the last one (Embree reads them)
+    std::vector<float> normals;      // 3 a vertex
+    std::vector<float> uvs;          // 2 a vertex
+    std::vector<kernel::TransformRecord> transforms;
+    std::vector<kernel::InstanceRecord> instances;  // [0] is the world
+    std::vector<kernel::MaterialRecord> materials;
+    std::vector<kernel::TextureOp> texture_ops;
+    std::vector<kernel::ImageRecord> images;
+    std::vector<uint32_t> texels;
+    std::vector<kernel::LightRecord> lights;
+    std::vector<float> distributions;
+    std::vector<GeometrySet> sets;              // [0] is the world
+    std::vector<uint32_t> instance_sets;        // set of each instance; [0] = 0
+
+    Effects effects;
+    std::string name;  // file name of the scene
+    std::vector<std::string> notes;        // what was mapped or ignored, and is to be said ("Sampler zsobol: ...")
+    std::vector<std::string> unsupported;  // with --skip-unsupported: what was left out
+    uint64_t hash = 0;                     // of everything above
+
+    uint32_t width() const { return record.camera.film.x; }
+    uint32_t height() const { return record.camera.film.y; }
+};
+
+}  // namespace lampyris
