@@ -1,0 +1,125 @@
+// Counter-based random numbers: every number is a function of (seed, pixel, sample, dimension), so that an image does not
+// depend on threads or order, and a pixel can be replayed alone, on either backend.
+#ifndef LAMPYRIS_KERNEL_RANDOM
+#define LAMPYRIS_KERNEL_RANDOM
+
+// Integer hash with low bias (C. Wellons, "Prospecting for hash functions", 2018: lowbias32).
+FN uint hash32(uint x) {
+    x ^= x >> 16u;
+    x *= 0x7feb352du;
+    x ^= x >> 15u;
+    x *= 0x846ca68bu;
+    x ^= x >> 16u;
+    return x;
+}
+FN uint hash_combine(uint a, uint b) { return hash32(a ^ (b * 0x9e3779b9u + 0x7f4a7c15u + (a << 6u) + (a >> 2u))); }
+
+// Three words from three (Jarzynski and Olano 2020, "Hash Functions for GPU Rendering": pcg3d).
+FN uvec3 pcg3d(uvec3 v) {
+    v = v * 1664525u + uvec3(1013904223u);
+    v.x += v.y * v.z;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v.x ^= v.x >> 16u;
+    v.y ^= v.y >> 16u;
+    v.z ^= v.z >> 16u;
+    v.x += v.y * v.z;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    return v;
+}
+
+// [0, 1) with 24 bits.
+FN float unit_float(uint bits) { return float(bits >> 8u) * 5.9604644775390625e-8f; }
+
+FN uint reverse_bits(uint x) {
+    x = (x << 16u) | (x >> 16u);
+    x = ((x & 0x00ff00ffu) << 8u) | ((x & 0xff00ff00u) >> 8u);
+    x = ((x & 0x0f0f0f0fu) << 4u) | ((x & 0xf0f0f0f0u) >> 4u);
+    x = ((x & 0x33333333u) << 2u) | ((x & 0xccccccccu) >> 2u);
+    x = ((x & 0x55555555u) << 1u) | ((x & 0xaaaaaaaau) >> 1u);
+    return x;
+}
+
+// Owen scrambling of bit-reversed numbers by hashing (Laine and Karras 2011, constants by Vegdahl 2021; used as in Burley
+// 2020, "Practical Hash-based Owen Scrambling").
+FN uint scramble_reversed(uint x, uint seed) {
+    x ^= x * 0x3d20adeau;
+    x += seed;
+    x *= (seed >> 16u) | 1u;
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
+    return x;
+}
+
+// The second Sobol dimension's generator matrix is Pascal's triangle mod 2, a five-fold tensor power of (1 1; 0 1): five
+// steps instead of 32. The result is bit-reversed.
+FN uint sobol_second_reversed(uint x) {
+    x ^= (x & 0xaaaaaaaau) >> 1u;
+    x ^= (x & 0xccccccccu) >> 2u;
+    x ^= (x & 0xf0f0f0f0u) >> 4u;
+    x ^= (x & 0xff00ff00u) >> 8u;
+    x ^= (x & 0xffff0000u) >> 16u;
+    return x;
+}
+
+CONST uint SAMPLER_SOBOL = 0u;        // padded two-dimensional Owen-scrambled Sobol
+CONST uint SAMPLER_INDEPENDENT = 1u;
+
+struct Sampler {
+    uint key;        // of seed and pixel
+    uint index;      // of the sample
+    uint dimension;  // of the next number
+    uint kind;
+};
+
+FN Sampler sampler_begin(uint pixel, uint sample_index, uint seed, uint kind) {
+    Sampler s;
+    s.key = hash_combine(hash32(seed + 0x68bc21ebu), pixel);
+    s.index = sample_index;
+    s.dimension = 0u;
+    s.kind = kind;
+    return s;
+}
+
+FN float sample_1d(INOUT(Sampler) s) {
+    uint dimension = s.dimension++;
+    if (s.kind == SAMPLER_INDEPENDENT) return unit_float(pcg3d(uvec3(s.key, s.index, dimension)).x);
+    uint seed = hash_combine(s.key, dimension);
+    uint shuffled = reverse_bits(scramble_reversed(reverse_bits(s.index), seed));
+    return unit_float(reverse_bits(scramble_reversed(shuffled, hash32(seed ^ 0xa511e9b3u))));
+}
+
+FN vec2 sample_2d(INOUT(Sampler) s) {
+    uint dimension = s.dimension;
+    s.dimension += 2u;
+    if (s.kind == SAMPLER_INDEPENDENT) {
+        uvec3 bits = pcg3d(uvec3(s.key, s.index, dimension));
+        return vec2(unit_float(bits.x), unit_float(bits.y));
+    }
+    uint seed = hash_combine(s.key, dimension);
+    uint shuffled = reverse_bits(scramble_reversed(reverse_bits(s.index), seed));
+    uint x = reverse_bits(scramble_reversed(shuffled, hash32(seed ^ 0xa511e9b3u)));
+    uint y = reverse_bits(scramble_reversed(sobol_second_reversed(shuffled), hash32(seed ^ 0x63d83595u)));
+    return vec2(unit_float(x), unit_float(y));
+}
+
+// A stream of independent numbers for inner random walks (layered coats), keyed by two words.
+struct Rng {
+    uint key;
+    uint counter;
+};
+
+FN Rng rng_begin(uint a, uint b) {
+    Rng r;
+    r.key = hash_combine(hash32(a), b);
+    r.counter = 0u;
+    return r;
+}
+
+FN float rng_float(INOUT(Rng) r) {
+    r.counter += 1u;
+    return unit_float(hash32(r.key + r.counter * 0x9e3779b9u));
+}
+
+#endif

@@ -1,0 +1,15 @@
+// Everything a kernel that renders needs, in order: GLSL wants each function before its use.
+#ifndef LAMPYRIS_KERNEL_SCENE
+#define LAMPYRIS_KERNEL_SCENE
+
+#include "core/kernel/prelude.h"
+#ifndef __cplusplus  // C++ has the layouts in its namespace already (cpp_kernel.h)
+#include "core/kernel/effects.h"
+#include "core/kernel/layout.h"
+#endif
+#include "core/kernel/bindings.h"
+#include "core/kernel/surface.h"
+#include "core/kernel/math.h"
+#include "core/kernel/random.h"
+
+#endif
