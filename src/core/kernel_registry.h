@@ -28,6 +28,7 @@ struct CpuInvocation {
     void* const* kernel_buffers;
     const CpuTracer* tracer;
     uint32_t begin, end;
+    uint32_t* unfinished = nullptr;  // set to nonzero where a kernel reports an unfinished loop
 };
 
 using CpuKernelFunction = void (*)(const CpuInvocation&);

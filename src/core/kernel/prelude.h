@@ -22,6 +22,9 @@
 #define KERNEL(name) inline void kernel_main(uint index)
 #define ATOMIC_ADD_U32(place, value) atomic_add_u32(&(place), value)
 #define ATOMIC_OR_U32(place, value) atomic_or_u32(&(place), value)
+// A kernel says that it could not do all of its work (a loop's bound or a stack was not enough, or the driver ended a loop
+// early: Mesa 22 does after 65,535 iterations). Device::run then throws; an image is never silently dark.
+#define REPORT_UNFINISHED() report_unfinished(unfinished_)
 #else
 #define IN(T) in T
 #define OUT(T) out T
@@ -35,6 +38,8 @@
 #define KERNEL(name) void kernel_main(uint index)
 #define ATOMIC_ADD_U32(place, value) atomicAdd(place, value)
 #define ATOMIC_OR_U32(place, value) atomicOr(place, value)
+layout(std430, set = 0, binding = 17) restrict buffer UnfinishedBlock { uint unfinished_[]; };
+#define REPORT_UNFINISHED() atomicOr(unfinished_[0], 1u)
 #endif
 
 #endif
