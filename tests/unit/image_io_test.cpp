@@ -1,0 +1,298 @@
+// Images to files and back: what must survive does, and what cannot be read or written says why.
+#include "core/error.h"
+#include "core/file.h"
+#include "core/image/image_io.h"
+#include "core/image/pfm.h"
+
+#include <OpenImageIO/imageio.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <csignal>
+#include <limits>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace lampyris {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ImageIo : public testing::Test {
+ protected:
+    void SetUp() override {
+        folder_ = fs::temp_directory_path() / ("lampyris-image-io-" + std::to_string(::getpid()));
+        fs::create_directories(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+    std::string path(const std::string& name) const { return (folder_ / name).string(); }
+    void write_bytes(const std::string& name, const std::string& bytes) const {
+        std::ofstream(path(name), std::ios::binary) << bytes;
+    }
+    fs::path folder_;
+};
+
+// No two pixels or channels alike, and negative, tiny, huge and non-finite numbers among them.
+Image sample_image(int width, int height, std::vector<std::string> names) {
+    Image image(width, height, std::move(names));
+    for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = float(i) * 0.37f - 3.0f;
+    image.pixels[0] = std::numeric_limits<float>::infinity();
+    image.pixels[1] = 1e-42f;
+    image.pixels[2] = 3e38f;
+    image.pixels[4] = std::numeric_limits<float>::quiet_NaN();
+    return image;
+}
+
+void expect_same_bits(const Image& a, const Image& b) {
+    ASSERT_EQ(a.size_text(), b.size_text());
+    ASSERT_EQ(a.channel_names, b.channel_names);
+    for (size_t i = 0; i < a.pixels.size(); ++i)
+        ASSERT_EQ(std::bit_cast<uint32_t>(a.pixels[i]), std::bit_cast<uint32_t>(b.pixels[i])) << "value " << i;
+}
+
+template <class F>
+std::string message_of(F&& f, ExitCode expected) {
+    try {
+        f();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), expected) << error.what();
+        return error.what();
+    }
+    ADD_FAILURE() << "nothing was thrown";
+    return {};
+}
+
+TEST_F(ImageIo, ExrKeepsEveryBitOfEveryChannel) {
+    // 67 x 41 is no multiple of the tile.
+    const Image image = sample_image(67, 41, {"R", "G", "B", "albedo.R", "albedo.G", "albedo.B", "depth.Z", "normal.X", "normal.Y",
+                                              "normal.Z", "samples", "variance.B", "variance.G", "variance.R"});
+    write_image(path("a.exr"), image);
+    const Image read = read_image(path("a.exr"));
+    expect_same_bits(image, read.select(image.channel_names));
+    EXPECT_EQ(read.storage, Image::Storage::kFloat);
+    EXPECT_EQ(read.encoding, Image::Encoding::kLinear);
+}
+
+TEST_F(ImageIo, ExrIsTiledAndKeepsMetadata) {
+    Image image = sample_image(100, 70, {"R", "G", "B"});
+    image.metadata = {{"lampyris:scene", "scenes/demo.pbrt"}, {"lampyris:seed", "7"}, {"lampyris:parameters", "{\"maxdepth\": 12}"},
+                      {"Software", "lampyris 0.1.0"}};
+    write_image(path("a.exr"), image);
+    std::map<std::string, std::string> metadata = read_image(path("a.exr")).metadata;
+    EXPECT_EQ(metadata.erase("DateTime"), 1u);  // OpenImageIO adds it
+    EXPECT_EQ(metadata, image.metadata);
+    const auto file = OIIO::ImageInput::open(path("a.exr"));
+    ASSERT_TRUE(file);
+    EXPECT_EQ(file->spec().tile_width, 64);
+    EXPECT_EQ(file->spec().get_string_attribute("compression"), "zip");
+}
+
+TEST_F(ImageIo, HalfExrRoundsColourAndKeepsTheRest) {
+    Image image(5, 3, {"R", "G", "B", "depth.Z", "samples"});
+    for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = 0.1f + float(i);
+    image.at(1, 1, 3) = 123456.789f;  // more than half holds, in a channel that stays float
+    image.at(2, 2, 0) = 1e6f;         // more than half holds, in one that does not
+    WriteOptions options;
+    options.half = true;
+    EXPECT_EQ(write_image(path("h.exr"), image, options).clamped, 1u);
+    const Image read = read_image(path("h.exr"));
+    EXPECT_EQ(read.at(2, 2, read.find_channel("R")), 65504.0f);
+    EXPECT_EQ(read.at(1, 1, read.find_channel("depth.Z")), 123456.789f);
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x)
+            for (int c = 0; c < 3; ++c) {
+                const float expected = image.at(x, y, c);
+                if (expected >= 65504.0f) continue;
+                EXPECT_NEAR(read.at(x, y, c), expected, expected / 2048.0f);  // half's rounding: 2^-11
+            }
+    const auto file = OIIO::ImageInput::open(path("h.exr"));
+    ASSERT_TRUE(file);
+    EXPECT_EQ(file->spec().channelformat(file->spec().channelindex("R")), OIIO::TypeDesc::HALF);
+    EXPECT_EQ(file->spec().channelformat(file->spec().channelindex("samples")), OIIO::TypeDesc::FLOAT);
+}
+
+TEST_F(ImageIo, ExrKeepsTheWindowOfACrop) {
+    const Image image = sample_image(40, 30, {"R", "G", "B"});
+    const Image crop = image.crop({10, 5, 20, 25});
+    ASSERT_EQ(crop.size_text(), "10x20");
+    EXPECT_EQ(crop.at(0, 0, 1), image.at(10, 5, 1));
+    EXPECT_EQ(crop.at(9, 19, 2), image.at(19, 24, 2));
+    write_image(path("crop.exr"), crop);
+    const Image read = read_image(path("crop.exr"));
+    expect_same_bits(crop, read);
+    EXPECT_EQ(read.x, 10);
+    EXPECT_EQ(read.y, 5);
+    EXPECT_EQ(read.full_width, 40);
+    EXPECT_EQ(read.full_height, 30);
+    EXPECT_THROW(image.crop({10, 5, 41, 25}), InputError);
+    EXPECT_THROW(image.crop({10, 5, 10, 25}), InputError);
+}
+
+TEST_F(ImageIo, ChannelsAreFoundByNameWhateverTheirOrder) {
+    Image image(1, 1, {"B", "A", "R", "G"});
+    image.pixels = {3, 4, 1, 2};
+    EXPECT_EQ(image.rgb().pixels, (std::vector<float>{1, 2, 3}));
+    write_image(path("order.exr"), image);
+    EXPECT_EQ(read_image(path("order.exr"), {.rgb = true}).pixels, (std::vector<float>{1, 2, 3}));
+    Image grey(1, 1, {"Y"});
+    grey.pixels = {5};
+    write_image(path("grey.exr"), grey);
+    EXPECT_EQ(read_image(path("grey.exr")).channels, 1);
+    EXPECT_EQ(read_image(path("grey.exr"), {.rgb = true}).pixels, (std::vector<float>{5, 5, 5}));
+    Image odd(1, 1, {"depth.Z", "samples"});
+    write_image(path("odd.exr"), odd);
+    const std::string message = message_of([&] { read_image(path("odd.exr"), {.rgb = true}); }, ExitCode::kBadInput);
+    EXPECT_NE(message.find("depth.Z"), std::string::npos) << message;
+    EXPECT_NE(message.find("odd.exr"), std::string::npos) << message;
+}
+
+TEST_F(ImageIo, UnsignedChannelsOfAnExrAreCounts) {
+    OIIO::ImageSpec spec(2, 1, 1, OIIO::TypeDesc::UINT32);
+    spec.channelnames = {"samples"};
+    const auto output = OIIO::ImageOutput::create(path("count.exr"));
+    ASSERT_TRUE(output && output->open(path("count.exr"), spec));
+    const uint32_t counts[2] = {512, 7};
+    ASSERT_TRUE(output->write_image(OIIO::TypeDesc::UINT32, counts) && output->close());
+    const Image read = read_image(path("count.exr"));
+    EXPECT_FLOAT_EQ(read.pixels[0], 512.0f);
+    EXPECT_FLOAT_EQ(read.pixels[1], 7.0f);
+}
+
+TEST_F(ImageIo, PfmKeepsEveryBitAndTheRowsOrder) {
+    const Image image = sample_image(7, 5, {"R", "G", "B"});
+    write_image(path("a.pfm"), image);
+    expect_same_bits(image, read_image(path("a.pfm")));
+    const Image grey = sample_image(3, 2, {"Y"});
+    write_image(path("g.pfm"), grey);
+    expect_same_bits(grey, read_image(path("g.pfm")));
+}
+
+TEST_F(ImageIo, PfmIsReadAsTheFormatIsDefined) {
+    // Netpbm: rows from the bottom up; a positive scale means big-endian. 1.0f is 3f 80 00 00, 2.0f is 40 00 00 00.
+    const std::string one("\x3f\x80\0\0", 4), two("\x40\0\0\0", 4);
+    write_bytes("big.pfm", "Pf\n1 2\n1.0\n" + one + two);
+    const Image big = read_image(path("big.pfm"));
+    EXPECT_EQ(big.at(0, 0, 0), 2.0f);  // the last row in the file is the top
+    EXPECT_EQ(big.at(0, 1, 0), 1.0f);
+    write_bytes("little.pfm", "Pf 1 1\n-0.5\n" + std::string("\0\0\x80\x3f", 4));
+    EXPECT_EQ(read_image(path("little.pfm")).at(0, 0, 0), 0.5f);  // times the scale
+}
+
+TEST_F(ImageIo, BadPfmSaysWhatIsWrong) {
+    const std::vector<std::pair<std::string, std::string>> cases = {
+        {"PF\n2 2\n-1.0\nabc", "cut short"},   {"PF\n0 2\n-1.0\n", "0x2"},      {"PF\nx 2\n-1.0\n", "width is 'x'"},
+        {"PF\n2 2\n0\n", "scale"},             {"PF\n", "width is ''"},         {"PF\n2147483647 2147483647\n-1\n", "cut short"},
+        {"PF\n99999999999 2\n-1.0\n", "width"}, {"PF\n2 -2\n-1.0\n", "2x-2"},
+    };
+    for (const auto& [bytes, expected] : cases) {
+        write_bytes("bad.pfm", bytes);
+        const std::string message = message_of([&] { read_image(path("bad.pfm")); }, ExitCode::kBadInput);
+        EXPECT_NE(message.find(expected), std::string::npos) << message;
+        EXPECT_NE(message.find("bad.pfm"), std::string::npos) << message;
+    }
+}
+
+TEST_F(ImageIo, PngIsReadAsLightOrAsStored) {
+    write_png(path("a.png"), 2, 1, {255, 128, 0, 10, 188, 64});
+    const Image stored = read_image(path("a.png"), {.linear = false});
+    EXPECT_EQ(stored.encoding, Image::Encoding::kSrgb);
+    EXPECT_EQ(stored.storage, Image::Storage::kUint8);
+    EXPECT_FLOAT_EQ(stored.at(0, 0, 1), 128.0f / 255.0f);
+    const Image light = read_image(path("a.png"));
+    EXPECT_EQ(light.encoding, Image::Encoding::kLinear);
+    // IEC 61966-2-1: ((128/255 + 0.055) / 1.055)^2.4 and (10/255) / 12.92
+    EXPECT_NEAR(light.at(0, 0, 1), 0.215861f, 1e-6f);
+    EXPECT_NEAR(light.at(1, 0, 0), 0.00303527f, 1e-8f);
+    EXPECT_EQ(light.at(0, 0, 0), 1.0f);
+}
+
+TEST_F(ImageIo, UnreadableFilesAreNamedWithTheReason) {
+    EXPECT_NE(message_of([&] { read_image(path("none.exr")); }, ExitCode::kBadInput).find("No such file"), std::string::npos);
+    EXPECT_NE(message_of([&] { read_image(folder_.string()); }, ExitCode::kBadInput).find("folder"), std::string::npos);
+    write_bytes("empty.png", "");
+    EXPECT_NE(message_of([&] { read_image(path("empty.png")); }, ExitCode::kBadInput).find("empty"), std::string::npos);
+    write_bytes("noise.exr", "this is no picture at all, whatever its name says");
+    EXPECT_NE(message_of([&] { read_image(path("noise.exr")); }, ExitCode::kBadInput).find("noise.exr"), std::string::npos);
+    // A whole file that was cut in the middle.
+    write_image(path("whole.exr"), sample_image(200, 200, {"R", "G", "B"}));
+    fs::resize_file(path("whole.exr"), fs::file_size(path("whole.exr")) / 2);
+    EXPECT_NE(message_of([&] { read_image(path("whole.exr")); }, ExitCode::kBadInput).find("whole.exr"), std::string::npos);
+}
+
+TEST_F(ImageIo, UnknownExtensionListsTheKnownOnes) {
+    const std::string message =
+        message_of([&] { write_image(path("a.gif"), sample_image(4, 4, {"R", "G", "B"})); }, ExitCode::kBadInput);
+    EXPECT_NE(message.find(".exr, .pfm, .png"), std::string::npos) << message;
+    EXPECT_THROW(check_image_output(path("missing-folder/a.exr")), InputError);
+    EXPECT_NO_THROW(check_image_output(path("a.EXR")));
+    EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(ImageIo, AFullDiskIsToldAndTheImageSaved) {
+    if (!fs::exists("/dev/full")) GTEST_SKIP() << "this machine has no /dev/full";
+    fs::create_symlink("/dev/full", path("full.exr"));
+    const Image image = sample_image(8, 8, {"R", "G", "B"});
+    const std::string message = message_of([&] { write_image(path("full.exr"), image); }, ExitCode::kMachineCannot);
+    EXPECT_NE(message.find("No space left on device"), std::string::npos) << message;
+    const size_t begin = message.find("saved as '");
+    ASSERT_NE(begin, std::string::npos) << message;
+    const std::string saved = message.substr(begin + 10, message.size() - begin - 11);
+    expect_same_bits(image, read_image(saved));
+    fs::remove(saved);
+}
+
+TEST_F(ImageIo, AFailedWriteLeavesTheOldFileAlone) {
+    const std::string target = path("kept.txt");
+    write_file_atomically(target, "first");
+    // A limit on the size of files makes write() fail half-way, in a process of its own.
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+        ::signal(SIGXFSZ, SIG_IGN);
+        const rlimit limit{1000, 1000};
+        ::setrlimit(RLIMIT_FSIZE, &limit);
+        int result = 1;
+        try {
+            write_file_atomically(target, std::string(100000, 'x'));
+        } catch (const MachineError& error) {
+            result = std::string(error.what()).find("File too large") != std::string::npos ? 42 : 2;
+        }
+        ::_exit(result);
+    }
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_EQ(WEXITSTATUS(status), 42);
+    std::ifstream file(target);
+    EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "first");
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);  // no temporary file is left
+}
+
+TEST_F(ImageIo, AFolderWithoutPermissionIsTold) {
+    fs::create_directory(path("closed"));
+    fs::permissions(path("closed"), fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read | fs::perms::others_exec);
+    fs::permissions(folder_, fs::perms::all);
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+        if (::geteuid() == 0 && ::seteuid(65534) != 0) ::_exit(3);  // root may write anywhere
+        int result = 1;
+        try {
+            check_image_output(path("closed/a.exr"));
+        } catch (const MachineError& error) {
+            result = std::string(error.what()).find("Permission denied") != std::string::npos ? 42 : 2;
+        } catch (const std::exception&) {
+            result = 4;
+        }
+        ::_exit(result);
+    }
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_EQ(WEXITSTATUS(status), 42);
+}
+
+}  // namespace
+}  // namespace lampyris
