@@ -1,0 +1,151 @@
+// Parameters, each declared once: name, type, default, range or choices, unit, documentation. Defaults, range checks,
+// errors about unknown names, `lampyris plugins` and the reference page come from the declaration.
+//
+// Scene plugins (shapes, materials, ...) declare a list of ParameterSpec and read the values of a directive through a
+// ParameterReader. Integrators and photon maps declare theirs for the kernel, with PARAMS (core/kernel/params.h);
+// parameter_fields() makes the same specs of that.
+#pragma once
+
+#include "core/error.h"
+#include "core/scene/description.h"
+
+#include <concepts>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace lampyris {
+
+struct ParameterSpec {
+    std::string name;
+    ParameterType type = ParameterType::kFloat;  // kSpectrum: rgb, blackbody or spectrum
+    bool array = false;                          // any number of values
+    bool texturable = false;                     // a texture of the same name may stand in for the value
+    bool required = false;
+    double number = 0.0;                // default of floats, integers and bools
+    std::string text;                   // default of strings; of everything else, what its absence means
+    double minimum = -std::numeric_limits<double>::infinity();
+    double maximum = std::numeric_limits<double>::infinity();
+    bool above_minimum = false;         // the minimum itself is outside
+    std::vector<std::string> choices;   // of strings
+    std::string unit;
+    std::string doc;
+
+    // Chained onto one of the functions below: real("radius", 1, "radius").above(0).in("scene units").
+    ParameterSpec&& at_least(double low) && { minimum = low; return std::move(*this); }
+    ParameterSpec&& above(double low) && { minimum = low, above_minimum = true; return std::move(*this); }
+    ParameterSpec&& between(double low, double high) && { minimum = low, maximum = high; return std::move(*this); }
+    ParameterSpec&& one_of(std::vector<std::string> list) && { choices = std::move(list); return std::move(*this); }
+    ParameterSpec&& in(std::string of) && { unit = std::move(of); return std::move(*this); }
+    ParameterSpec&& textured() && { texturable = true; return std::move(*this); }
+    ParameterSpec&& needed() && { required = true; return std::move(*this); }
+
+    bool contains(double value) const;  // in range; NaN is not
+    std::string type_text() const;      // "float or texture", "string, one of a, b"
+    std::string range_text() const;     // "above 0", "1 to 1024", empty where there is none
+    std::string default_text() const;
+};
+using ParameterSpecs = std::vector<ParameterSpec>;
+
+ParameterSpec real(std::string name, double default_value, std::string doc);
+ParameterSpec integer(std::string name, int default_value, std::string doc);
+ParameterSpec boolean(std::string name, bool default_value, std::string doc);
+ParameterSpec text(std::string name, std::string default_value, std::string doc);
+// Tuples, spectra, textures and whole arrays have no default value here: `absent` says what it means to leave it out.
+ParameterSpec value(std::string name, ParameterType type, std::string absent, std::string doc);
+ParameterSpec values(std::string name, ParameterType type, std::string absent, std::string doc);
+
+std::vector<std::string> spec_names(const ParameterSpecs& specs);
+const ParameterSpec* find_spec(const ParameterSpecs& specs, std::string_view name);
+
+// Reads one directive's parameters against its specs. Errors go to the diagnostics, with the default in place of the value.
+// Asking for a name without a spec is a bug (std::logic_error).
+class ParameterReader {
+ public:
+    ParameterReader(const ParameterSpecs& specs, Entity& entity, Diagnostics& diagnostics);
+
+    bool has(std::string_view name) const;
+    float get_float(std::string_view name);
+    int32_t get_int(std::string_view name);
+    bool get_bool(std::string_view name);
+    std::string get_string(std::string_view name);
+    std::vector<float> get_tuple(std::string_view name, size_t count);  // empty when absent or wrong
+    std::vector<float> take_floats(std::string_view name);              // whole arrays, moved out
+    std::vector<int32_t> take_ints(std::string_view name);
+    const Parameter* find(std::string_view name);  // whatever is there by that name, marked as used
+    Location location(std::string_view name) const;  // of the value, or of the directive where it is absent
+
+    // A message at a parameter (or at the directive, where the parameter is absent).
+    void error(std::string_view name, std::string message, std::string hint = {});
+    // Call last: what nobody asked for is an error that lists the known names.
+    void finish(const std::string& of_what);
+
+    const ParameterSpecs& specs() const { return *specs_; }
+    Entity& entity() { return *entity_; }
+    Diagnostics& diagnostics() { return *diagnostics_; }
+
+ private:
+    const ParameterSpec& spec(std::string_view name) const;
+    bool check(const ParameterSpec& spec, double value);
+    const ParameterSpecs* specs_;
+    Entity* entity_;
+    Diagnostics* diagnostics_;
+};
+
+// ---- Parameters of integrators and photon maps: members of a plain struct --------------------------------------------
+
+// One member of a struct declared with PARAMS: an int, uint or float.
+struct ParameterField {
+    ParameterSpec spec;
+    size_t offset = 0;
+    enum class Type { kInt, kUint, kFloat } type = Type::kFloat;
+};
+using ParameterFields = std::vector<ParameterField>;
+
+template <typename T>
+    requires std::same_as<T, int> || std::same_as<T, unsigned> || std::same_as<T, float>
+ParameterField parameter_field(const char* name, size_t offset, double default_value, double low, double high,
+                               const char* doc) {
+    ParameterSpec spec = std::is_same_v<T, float> ? real(name, default_value, doc) : integer(name, int(default_value), doc);
+    using Type = ParameterField::Type;
+    return {std::move(spec).between(low, high), offset,
+            std::is_same_v<T, float> ? Type::kFloat : std::is_same_v<T, int> ? Type::kInt : Type::kUint};
+}
+
+#define LAMPYRIS_PARAMETER_FIELD(type, name, default_value, low, high, doc) \
+    ::lampyris::parameter_field<type>(#name, offsetof(Struct, name), default_value, low, high, doc),
+// The fields of a struct declared with PARAMS(S, LIST), as an expression.
+#define PARAMETER_FIELDS(S, LIST)                                       \
+    [] {                                                                \
+        using Struct = S;                                               \
+        return ::lampyris::ParameterFields{LIST(LAMPYRIS_PARAMETER_FIELD)}; \
+    }()
+
+ParameterSpecs specs_of(const ParameterFields& fields);
+// Writes every default into the struct.
+void set_defaults(void* target, const ParameterFields& fields);
+// Overwrites what the directive gives. Unknown names are left for the caller's report_unused (an integrator shares its
+// directive with others: see spec_names).
+void read_parameters(void* target, const ParameterFields& fields, const ParameterList& list, Diagnostics& diagnostics);
+// The same from the command line: one "key=value". Throws InputError for an unknown key, a malformed or excessive value;
+// `of_what` names the plugin in the message ("integrator \"ao\"").
+void set_parameter(void* target, const ParameterFields& fields, std::string_view key, std::string_view value,
+                   const std::string& of_what);
+// Every field as it stands, for statistics and metadata: name and value as text.
+std::vector<std::pair<std::string, std::string>> show_parameters(const void* source, const ParameterFields& fields);
+
+// "name:key=value,key=value" as on the command line and in "string photon_map". Throws InputError where it is malformed.
+struct PluginChoice {
+    std::string name;
+    std::vector<std::pair<std::string, std::string>> settings;
+};
+PluginChoice parse_plugin_choice(std::string_view text);
+// "key=value,key=value"
+std::vector<std::pair<std::string, std::string>> parse_settings(std::string_view text);
+
+}  // namespace lampyris
