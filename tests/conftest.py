@@ -1,0 +1,40 @@
+"""Options of the Python tests: --regex picks by name, as `ctest -R` does; tests marked `long` run with `./dev test --long`."""
+
+import os
+import re
+from pathlib import Path
+
+import pytest
+
+SOURCE_DIR = Path(__file__).resolve().parent.parent
+
+
+def pytest_addoption(parser):
+    parser.addoption("--regex", default="", help="run only tests whose name (file::test) matches")
+
+
+def pytest_configure(config):
+    config.addinivalue_line("markers", "long: takes minutes; ./dev test --long runs it")
+
+
+def pytest_collection_modifyitems(config, items):
+    regex = re.compile(config.getoption("--regex"))
+    chosen = [item for item in items if regex.search(item.nodeid)]
+    config.hook.pytest_deselected(items=[item for item in items if item not in chosen])
+    items[:] = chosen
+
+
+@pytest.fixture(scope="session")
+def source_dir():
+    return SOURCE_DIR
+
+
+@pytest.fixture(scope="session")
+def build_dir():
+    """The CMake build tree under test, set by ./dev test."""
+    return Path(os.environ.get("LAMPYRIS_BUILD_DIR", SOURCE_DIR / "build/release"))
+
+
+@pytest.fixture(scope="session")
+def program(build_dir):
+    return build_dir / "lampyris"
