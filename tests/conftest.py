@@ -1,4 +1,4 @@
-"""Options of the Python tests: --regex picks by name, as `ctest -R` does; tests marked `long` run with `./dev test --long`."""
+"""Options of the Python tests: --regex picks by name, as `ctest -R` does; `long` marks what only --long runs."""
 
 import os
 import re

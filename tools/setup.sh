@@ -122,8 +122,10 @@ setup_venv() {
     say "making the Python environment build/venv (log: build/setup.log)"
     rm -rf build/venv
     mkdir -p build
-    /usr/bin/python3 -m venv build/venv >>build/setup.log 2>&1 &&
-        build/venv/bin/python -m pip install --quiet --require-hashes -r requirements.txt >>build/setup.log 2>&1 ||
-        { tail -n 15 build/setup.log >&2; fail "the Python environment could not be made" 2; }
+    if ! { /usr/bin/python3 -m venv build/venv &&
+        build/venv/bin/python -m pip install --quiet --require-hashes -r requirements.txt; } >>build/setup.log 2>&1; then
+        tail -n 15 build/setup.log >&2
+        fail "the Python environment could not be made" 2
+    fi
     cp requirements.txt build/venv/requirements.txt  # last: it marks the environment as complete
 }

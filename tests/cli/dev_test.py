@@ -22,7 +22,7 @@ def test_help_names_every_command(source_dir, arguments):
     done = dev(source_dir, *arguments)
     assert done.returncode == 0
     assert done.stderr == ""
-    for command in "demo test build bench reproduce format lint packages".split():
+    for command in ["demo", "test", "build", "bench", "reproduce", "format", "lint", "packages"]:
         assert f"\n  {command} " in done.stdout
 
 
@@ -66,14 +66,20 @@ def test_packages_are_listed_by_group_and_only_once(source_dir):
 
 def test_set_up_is_quick_and_silent_when_all_is_there(source_dir):
     """./dev test has set everything up before this test runs, so asking again must cost next to nothing."""
-    script = f"cd {source_dir} && say() {{ echo SAID; }} && fail() {{ exit 1; }} && . tools/setup.sh && setup_packages build test && setup_venv"
+    script = (
+        f"cd {source_dir} && say() {{ echo SAID; }} && fail() {{ exit 1; }} && . tools/setup.sh"
+        " && setup_packages build test && setup_venv"
+    )
     start = time.monotonic()
     done = subprocess.run(["bash", "-euc", script], capture_output=True, text=True, timeout=60, check=False)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
     assert time.monotonic() - start < 5.0  # 0.1 s on an idle machine; the tests share theirs
 
 
-CLASSIC = "# a comment\ndeb-src http://mirror.test/debian bookworm main\ndeb [arch=amd64 signed-by=/k.gpg] http://mirror.test/debian bookworm main\n"
+CLASSIC = """# a comment
+deb-src http://mirror.test/debian bookworm main
+deb [arch=amd64 signed-by=/k.gpg] http://mirror.test/debian bookworm main
+"""
 DEB822 = """Types: deb
 URIs: http://mirror.test/debian-security
 Suites: bookworm-security
