@@ -29,11 +29,12 @@
     E(EFFECT_ENVIRONMENT, 21, "environment", "radiance for escaping rays, shadow rays that leave the scene")            \
     E(EFFECT_ENVIRONMENT_IMAGE, 22, "environment-image", "importance sampling of an image of directions")               \
     E(EFFECT_PROJECTION_LIGHTS, 23, "projection-and-goniometric-lights", "an image look-up per shadow ray")             \
-    E(EFFECT_DEPTH_OF_FIELD, 24, "depth-of-field", "a lens sample per camera ray")
+    E(EFFECT_DEPTH_OF_FIELD, 24, "depth-of-field", "a lens sample per camera ray")                                      \
+    E(EFFECT_NOISE, 25, "noise-textures", "gradient noise, eight hashed corners an octave")
 
 #define LAMPYRIS_EFFECT_CONSTANT(constant, bit, name, cost) CONST uint constant = 1u << bit;
 LAMPYRIS_EFFECTS(LAMPYRIS_EFFECT_CONSTANT)
 #undef LAMPYRIS_EFFECT_CONSTANT
-CONST uint kAllEffects = 0x01ffffffu;
+CONST uint kAllEffects = 0x03ffffffu;
 
 #endif

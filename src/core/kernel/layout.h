@@ -87,21 +87,28 @@ struct MaterialRecord {
 
 // ---- Textures --------------------------------------------------------------------------------------------------------
 
-// A texture is a program in postfix order over a stack of colours (floats use all three channels alike), so that a texture
-// of textures needs no recursion: data.x is the operation, and the last operation of a program has data.y & 1.
-CONST uint TEXTURE_CONSTANT = 0u;       // push a
-CONST uint TEXTURE_IMAGE = 1u;          // push image data.z at the mapped uv; a: scale (rgb); data.w & 1: invert
-CONST uint TEXTURE_CHECKERBOARD = 2u;   // pop tex2, tex1; data.w: dimension (2 or 3)
-CONST uint TEXTURE_SCALE = 3u;          // pop scale, tex
-CONST uint TEXTURE_MIX = 4u;            // pop amount, tex2, tex1
-CONST uint TEXTURE_DIRECTION_MIX = 5u;  // pop tex2, tex1; a: direction
-CONST uint TEXTURE_DOTS = 6u;           // pop outside, inside
-CONST uint TEXTURE_STACK = 8u;          // the depth that the host guarantees
+// A texture is a program in postfix order over a stack of colours (floats use all three channels alike, and read the first), so
+// that a texture of textures needs no recursion: data.x is the operation, and the last operation of a program has data.y & 1.
+// Operations below TEXTURE_CHECKERBOARD push a value, the others replace the values that they pop by one.
+CONST uint TEXTURE_CONSTANT = 0u;       // a
+CONST uint TEXTURE_IMAGE = 1u;          // image data.z at the mapped uv; a: scale; data.w & 1: invert
+CONST uint TEXTURE_FBM = 2u;            // a.x: roughness; data.w: octaves; rows in m0..m2, as for the next three
+CONST uint TEXTURE_WRINKLED = 3u;       // the same
+CONST uint TEXTURE_WINDY = 4u;
+CONST uint TEXTURE_MARBLE = 5u;         // a: roughness, scale, variation; data.w: octaves
+CONST uint TEXTURE_CHECKERBOARD = 8u;   // of tex1, tex2; data.w: dimension (2 or 3)
+CONST uint TEXTURE_SCALE = 9u;          // of tex, scale
+CONST uint TEXTURE_MIX = 10u;           // of tex1, tex2, amount
+CONST uint TEXTURE_DIRECTION_MIX = 11u; // of tex1, tex2; a: unit direction in world space
+CONST uint TEXTURE_DOTS = 12u;          // of inside, outside
+CONST uint TEXTURE_BILERP = 13u;        // of v00, v01, v10, v11
+CONST uint TEXTURE_STACK = 16u;         // the depth and
+CONST uint TEXTURE_LENGTH = 1024u;      // the number of operations that the host guarantees not to exceed
 
 CONST uint MAPPING_UV = 0u;           // m0: su, sv, du, dv
 CONST uint MAPPING_SPHERICAL = 1u;    // m0..m2: rows of texture-from-world
 CONST uint MAPPING_CYLINDRICAL = 2u;  // rows
-CONST uint MAPPING_PLANAR = 3u;       // m0: vs, ds; m1: vt, dt; (three-dimensional checkerboard: rows)
+CONST uint MAPPING_PLANAR = 3u;       // m0: vs, ds; m1: vt, dt, with the texture's transform in them
 
 struct TextureOp {
     uvec4 data;   // operation, flags (1: last) | mapping << 8, image, option
@@ -117,14 +124,16 @@ CONST uint WRAP_CLAMP = 2u;
 CONST uint WRAP_OCTAHEDRAL = 3u;
 CONST uint FILTER_POINT = 0u;
 CONST uint FILTER_BILINEAR = 1u;
-CONST uint TEXEL_RGBA8_SRGB = 0u;   // one uint a texel, decoded through the sRGB curve
-CONST uint TEXEL_RGBA8 = 1u;        // one uint a texel, linear
+CONST uint TEXEL_RGBA8 = 0u;        // one uint a texel, R lowest; decoded by a table
+CONST uint TEXEL_R8 = 1u;           // four texels a uint, lowest first; decoded by a table
 CONST uint TEXEL_RGBA16F = 2u;      // two uints
 CONST uint TEXEL_RGB32F = 3u;       // three uints
+CONST uint TEXEL_R32F = 4u;         // one uint
 
+// Texels lie row by row from the top.
 struct ImageRecord {
-    uvec4 data;   // first uint in `texels`, width, height, texel format | wrap << 8 | filter << 16
-    vec4 params;  // x: gamma of an encoding "gamma x" (0: none)
+    uvec4 data;    // first uint in `texels`, width, height, texel format | wrap << 8 | filter << 16
+    uvec4 decode;  // x: first of 256 floats (as bits) in `texels`: what a byte of an 8-bit format means, in linear light
 };
 
 // ---- Lights ----------------------------------------------------------------------------------------------------------

@@ -11,5 +11,6 @@
 #include "core/kernel/surface.h"
 #include "core/kernel/math.h"
 #include "core/kernel/random.h"
+#include "core/kernel/texture.h"
 
 #endif
