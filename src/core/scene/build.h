@@ -1,0 +1,42 @@
+// SceneDescription -> Scene + Effects: what the directives mean, as flat arrays for any device.
+#pragma once
+
+#include "core/error.h"
+#include "core/scene/description.h"
+#include "core/scene/scene.h"
+
+#include <array>
+#include <optional>
+#include <string>
+
+namespace lampyris {
+
+struct BuildOptions {
+    std::optional<std::array<int, 2>> resolution;  // replaces the Film's
+    // Pixels to render, x0 y0 x1 y1, half-open, in the full picture; replaces the Film's crop window.
+    std::optional<std::array<int, 4>> crop;
+};
+
+// What the scene file says about the run rather than about the world.
+struct SceneSettings {
+    Entity integrator;  // "path" where the file names none; its parameters are read by the integrator
+    // How pbrt's sampler was mapped: SAMPLER_* kind by name.
+    std::string sampler = "independent";  // "independent" or "sobol" (Owen-scrambled)
+    int samples_per_pixel = 16;
+    uint32_t seed = 0;
+    std::string output;       // the Film's "filename"; may be empty
+    bool save_half = true;    // EXR: half floats ("savefp16")
+    // The rectangle of pixels to render, half-open.
+    std::array<int, 4> crop{0, 0, 0, 0};
+};
+
+struct BuiltScene {
+    Scene scene;
+    SceneSettings settings;
+};
+
+// Consumes the description: meshes are moved, not copied. Errors are collected in `diagnostics`; look at
+// has_errors() before using the result. Whether what is not supported is an error is the diagnostics' setting.
+BuiltScene build_scene(SceneDescription&& description, const BuildOptions& options, Diagnostics& diagnostics);
+
+}  // namespace lampyris

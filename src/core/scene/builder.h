@@ -1,0 +1,160 @@
+// What the parts of the scene's builder share: the registries of scene plugins, and the context that a plugin's factory
+// gets. A plugin is one file in shapes/, materials/, textures/, lights/, cameras/ or filters/ whose last line registers it.
+#pragma once
+
+#include "core/parameters.h"
+#include "core/registry.h"
+#include "core/scene/build.h"
+#include "core/scene/spectrum.h"
+#include "core/scene/texture_builder.h"
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace lampyris {
+
+// An area light as its directive says it, ready to be given to a shape.
+struct AreaLight {
+    bool valid = false;
+    bool two_sided = false;
+    glm::vec3 radiance{0.0f};
+    uint32_t texture = kNone;         // emission program, in place of `radiance`
+    glm::vec3 texture_average{0.0f};  // radiance on average, for choosing lights
+    float power = 0.0f;               // wanted, in the units of the scene; 0: none
+    float power_luminance = 1.0f;     // luminance per unit of scale, as "power" counts it
+    std::string asked_by;
+};
+
+// The whole of one build. Plugins append to `scene` and tell `diagnostics`.
+struct BuildContext {
+    SceneDescription& description;
+    const BuildOptions& options;
+    Scene& scene;
+    SceneSettings& settings;
+    Diagnostics& diagnostics;
+    TextureBuilder& textures;
+
+    // Lights in two groups, since the infinite ones come first in Scene::lights; the weights are powers.
+    struct PendingLight {
+        kernel::LightRecord record;
+        float power = 0.0f;          // luminous; of infinite and distant lights: per unit of the scene's radius squared
+        bool scales_with_scene = false;
+    };
+    std::vector<PendingLight> infinite_lights, lights;
+
+    // "scene.pbrt:12:1 (Material \"dielectric\")"
+    std::string place(const Entity& entity, const char* directive) const;
+    void ask(uint32_t effect, const std::string& asked_by) { scene.effects.ask(effect, asked_by); }
+    // A file name in the scene, relative to the scene file's folder.
+    std::string resolve(const std::string& filename) const;
+    // Appends a transform and returns its index. Errors for a singular one are reported at `where`.
+    uint32_t add_transform(const glm::mat4& to, Location where);
+    // Diagnostics::unsupported if the transform moves.
+    void refuse_motion(const AnimatedTransform& transform, Location where);
+};
+
+kernel::TransformRecord transform_record(const glm::mat4& to);
+bool swaps_handedness(const glm::mat4& m);
+
+// ---- Values that a texture may stand in for --------------------------------------------------------------------------
+
+struct ColorSlot {
+    glm::vec3 value{0.0f};
+    uint32_t texture = kNone;
+    bool given = false;
+    bool is_black() const { return texture == kNone && value == glm::vec3(0.0f); }
+};
+struct FloatSlot {
+    float value = 0.0f;
+    uint32_t texture = kNone;
+    bool given = false;
+};
+ColorSlot read_color(BuildContext& context, ParameterReader& reader, std::string_view name, SpectrumUse use,
+                     glm::vec3 default_value);
+FloatSlot read_float(BuildContext& context, ParameterReader& reader, std::string_view name);
+// One spectrum, without textures; `default_value` where it is absent or wrong.
+glm::vec3 read_spectrum(BuildContext& context, ParameterReader& reader, std::string_view name, SpectrumUse use,
+                        glm::vec3 default_value);
+
+// ---- Plugins ---------------------------------------------------------------------------------------------------------
+
+struct ShapeContext {
+    BuildContext& build;
+    ShapeDescription& shape;
+    ParameterReader& reader;
+    uint32_t material = 0;                // into Scene::materials
+    const AreaLight* area_light = nullptr;
+    bool in_object = false;
+
+    // Adds the shape's geometry, with material, alpha and orientation filled in, and its lights. Triangles and patches are
+    // given in world space already; `params` and a transform are for quadrics. `areas` are those of the primitives, for
+    // emissive shapes.
+    uint32_t add_geometry(uint32_t kind, uint32_t flags, uint32_t primitive_count);
+};
+using ShapeFactory = void (*)(ShapeContext&);
+Registry<ShapeFactory>& shape_registry();
+
+struct MaterialContext {
+    BuildContext& build;
+    MaterialDescription& material;
+    ParameterReader& reader;
+    kernel::MaterialRecord& record;
+    std::string asked_by;
+    std::vector<uint32_t> path;  // materials being built, outermost first: a mix must not contain itself
+    void ask(uint32_t effect) { build.ask(effect, asked_by); }
+};
+using MaterialFactory = void (*)(MaterialContext&);
+Registry<MaterialFactory>& material_registry();
+
+struct LightContext {
+    BuildContext& build;
+    LightDescription& light;
+    ParameterReader& reader;
+    std::string asked_by;
+    void ask(uint32_t effect) { build.ask(effect, asked_by); }
+};
+using LightFactory = void (*)(LightContext&);
+Registry<LightFactory>& light_registry();
+
+struct CameraContext {
+    BuildContext& build;
+    CameraDescription& camera;
+    ParameterReader& reader;
+    kernel::CameraRecord& record;
+    glm::vec2 resolution;
+    std::string asked_by;
+};
+using CameraFactory = void (*)(CameraContext&);
+Registry<CameraFactory>& camera_registry();
+
+struct FilterContext {
+    BuildContext& build;
+    ParameterReader& reader;
+    kernel::CameraRecord& record;
+};
+using FilterFactory = void (*)(FilterContext&);
+Registry<FilterFactory>& filter_registry();
+
+// The parameters that every shape has ("alpha") are added to its own.
+struct RegisterShape {
+    RegisterShape(const char* name, const char* summary, ParameterSpecs specs, ShapeFactory factory);
+};
+// Materials get "displacement" and "normalmap".
+struct RegisterMaterial {
+    RegisterMaterial(const char* name, const char* summary, ParameterSpecs specs, MaterialFactory factory);
+};
+struct RegisterLight {
+    RegisterLight(const char* name, const char* summary, ParameterSpecs specs, LightFactory factory);
+};
+struct RegisterCamera {
+    RegisterCamera(const char* name, const char* summary, ParameterSpecs specs, CameraFactory factory);
+};
+struct RegisterFilter {
+    RegisterFilter(const char* name, const char* summary, ParameterSpecs specs, FilterFactory factory);
+};
+
+}  // namespace lampyris

@@ -1,0 +1,68 @@
+// Spectra as the scene file gives them -> linear Rec.709, the only colour that kernels see.
+//
+// pbrt-v4 renders spectrally and converts at the film; here each spectrum is converted where it enters. A light's spectrum
+// goes through the CIE 1931 observer; a reflectance is seen under D65 (which is what an rgb light is in pbrt-v4), so that a
+// reflectance of one is white. docs/decisions explains what this approximates.
+#pragma once
+
+#include "core/error.h"
+#include "core/scene/description.h"
+
+#include <glm/vec3.hpp>
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lampyris {
+
+enum class SpectrumUse {
+    kAlbedo,     // a reflectance: 0 to 1
+    kUnbounded,  // an index of refraction, an absorption, ...
+    kLight,      // rgb keeps its value, anything else is scaled to a luminance of one, as pbrt-v4 does
+};
+
+// A spectrum as a piecewise linear function of the wavelength in nm; zero outside of its samples.
+struct SampledSpectrum {
+    std::vector<float> wavelengths, values;
+    float at(float wavelength) const;
+};
+
+inline constexpr float kFirstWavelength = 360.0f, kLastWavelength = 830.0f;
+
+// CIE 1931 2-degree colour-matching functions and the standard illuminant D65, at a wavelength in nm.
+glm::vec3 cie_xyz(float wavelength);
+float illuminant_d65(float wavelength);
+glm::vec3 rec709_from_xyz(glm::vec3 xyz);
+// Planck's law, relative: 1 at its maximum, as pbrt-v4 normalizes "blackbody".
+float blackbody(float wavelength, float kelvin);
+// Linear Rec.709 of a function of the wavelength: as emission, with luminance one; as a reflectance under D65.
+glm::vec3 light_rgb(const std::function<float(float)>& spectrum);
+glm::vec3 reflectance_rgb(const std::function<float(float)>& spectrum);
+// Linear Rec.709 of an rgb in one of pbrt-v4's colour spaces. Reflectances are adapted from white to white, lights keep
+// their chromaticity.
+glm::vec3 rec709_from(std::string_view color_space, glm::vec3 rgb, SpectrumUse use);
+
+// The spectra that pbrt-v4 knows by name; nothing for an unknown name.
+const SampledSpectrum* named_spectrum(std::string_view name);
+std::vector<std::string> named_spectra();
+bool is_glass_name(std::string_view name);
+
+// The complex index of refraction of a metal per channel, so that its Fresnel reflectance per channel follows the
+// spectral one: see spectrum_metal.cpp.
+struct ConductorRgb {
+    glm::vec3 eta, k;
+};
+ConductorRgb conductor_rgb(const SampledSpectrum& eta, const SampledSpectrum& k);
+
+// A parameter of type rgb, blackbody, spectrum or float as a sampled spectrum, where it is one; nothing for rgb.
+// Errors (unknown name, unreadable file, unordered wavelengths) are reported.
+std::optional<SampledSpectrum> sampled_spectrum(const Parameter& parameter, const std::string& directory,
+                                                Diagnostics& diagnostics);
+// Any spectrum parameter as linear Rec.709; nothing, and an error, where it is wrong.
+std::optional<glm::vec3> spectrum_rgb(const Parameter& parameter, SpectrumUse use, const std::string& directory,
+                                      Diagnostics& diagnostics);
+
+}  // namespace lampyris
