@@ -100,6 +100,7 @@ struct BackendRegistration {
 // Throws InputError for an unknown backend (with the list), MachineError where it has no device.
 std::unique_ptr<Device> create_device(const std::string& backend, const DeviceOptions& options = {});
 std::vector<std::string> backend_names();
+std::vector<std::pair<std::string, std::string>> backend_summaries();  // name, summary
 std::vector<DeviceInfo> list_devices();  // of every backend
 
 }  // namespace lampyris

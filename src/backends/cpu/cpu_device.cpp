@@ -1,0 +1,186 @@
+// The CPU backend: kernels as C++, oneTBB over indices, Embree (or the shaders' BVH2, built as C++) for rays.
+#include "backends/cpu/cpu_scene.h"
+#include "core/device.h"
+#include "core/error.h"
+#include "core/kernel_registry.h"
+
+#include <embree3/rtcore_config.h>
+#include <fmt/format.h>
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+#include <xmmintrin.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstring>
+#include <fstream>
+#include <new>
+#include <thread>
+
+namespace lampyris {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+// Denormals are zero, as on lavapipe and GPUs; restored afterwards, for the thread may be the caller's.
+class FlushDenormals {
+ public:
+    FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | 0x8040u); }
+    ~FlushDenormals() { _mm_setcsr(saved_); }
+
+ private:
+    unsigned saved_;
+};
+
+struct MemoryMeter {
+    size_t now = 0, peak = 0, limit = 0;
+    void add(size_t bytes, std::string_view what) {
+        if (limit && now + bytes > limit)
+            throw MachineError(fmt::format("error: {} needs {:.1f} MB, which goes beyond --max-memory ({:.1f} MB; {:.1f} MB are in use)",
+                                           what, double(bytes) / 1e6, double(limit) / 1e6, double(now) / 1e6));
+        now += bytes;
+        peak = std::max(peak, now);
+    }
+};
+
+class CpuBuffer final : public Buffer {
+ public:
+    CpuBuffer(size_t bytes, std::string_view name, std::shared_ptr<MemoryMeter> meter) : size_(bytes), meter_(std::move(meter)) {
+        meter_->add(bytes, name);
+        // 64 bytes more: a reader may load whole vectors past the end.
+        data_ = static_cast<std::byte*>(::operator new(bytes + 64, std::align_val_t(64), std::nothrow));
+        if (!data_) {
+            meter_->now -= bytes;
+            throw MachineError(fmt::format("error: no memory for {} ({:.1f} MB)", name, double(bytes) / 1e6));
+        }
+        std::memset(data_, 0, bytes + 64);
+    }
+    ~CpuBuffer() override {
+        meter_->now -= size_;
+        ::operator delete(data_, std::align_val_t(64));
+    }
+    size_t size() const override { return size_; }
+    void upload(const void* data, size_t bytes, size_t offset) override { std::memcpy(data_ + offset, data, bytes); }
+    void download(void* data, size_t bytes, size_t offset) const override { std::memcpy(data, data_ + offset, bytes); }
+    void fill_zero() override { std::memset(data_, 0, size_); }
+    void* data() { return data_; }
+
+ private:
+    size_t size_;
+    std::shared_ptr<MemoryMeter> meter_;
+    std::byte* data_ = nullptr;
+};
+
+class CpuKernel final : public Kernel {
+ public:
+    CpuKernel(std::string_view file, CpuKernelFunction run) : file_(file), run_(run) {}
+    std::string file_;
+    CpuKernelFunction run_;
+};
+
+std::string processor_name() {
+    std::ifstream info("/proc/cpuinfo");
+    for (std::string line; std::getline(info, line);)
+        if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+    return "unknown processor";
+}
+
+class CpuDevice final : public Device {
+ public:
+    CpuDevice(CpuTracerKind tracer, const DeviceOptions& options) : tracer_(tracer), meter_(std::make_shared<MemoryMeter>()) {
+        meter_->limit = options.max_memory;
+        threads_ = options.threads ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+        arena_.initialize(int(threads_));
+    }
+    std::string backend() const override { return tracer_ == CpuTracerKind::embree ? "cpu" : "cpu-bvh2"; }
+    std::string description() const override { return processor_name(); }
+    unsigned threads() const override { return threads_; }
+
+    BufferHandle create_buffer(size_t bytes, std::string_view name) override {
+        return std::make_shared<CpuBuffer>(bytes, name, meter_);
+    }
+
+    DeviceSceneHandle upload(const Scene& scene) override {
+        const auto start = Clock::now();
+        std::shared_ptr<CpuScene> result;
+        arena_.execute([&] { result = std::make_shared<CpuScene>(scene, tracer_); });
+        statistics_.build_s += seconds_since(start);
+        meter_->add(result->memory_bytes(), "the scene's acceleration structure");
+        return result;
+    }
+
+    KernelHandle compile(std::string_view file, uint32_t effects) override {
+        return std::make_shared<CpuKernel>(file, find_cpu_kernel(file, tracer_, effects));
+    }
+
+    void run(const Kernel& kernel, const DeviceScene* scene, std::span<const BufferHandle> buffers, uint32_t begin,
+             uint32_t count) override {
+        if (count == 0) return;
+        const auto start = Clock::now();
+        const CpuKernel& cpu_kernel = static_cast<const CpuKernel&>(kernel);
+        std::array<void*, kMaxKernelBuffers> pointers{};
+        for (size_t i = 0; i < buffers.size(); ++i)
+            pointers.at(i) = buffers[i] ? static_cast<CpuBuffer&>(*buffers[i]).data() : nullptr;
+        static void* const kNoScene[CpuScene::kBufferCount] = {};
+        const CpuScene* cpu_scene = static_cast<const CpuScene*>(scene);
+        uint32_t unfinished = 0;
+        CpuInvocation call;
+        call.scene_buffers = cpu_scene ? cpu_scene->buffers() : kNoScene;
+        call.kernel_buffers = pointers.data();
+        call.tracer = cpu_scene ? &cpu_scene->tracer() : nullptr;
+        call.unfinished = &unfinished;
+        // Small blocks, handed out as threads come free: paths differ in length by far.
+        const uint32_t block = std::clamp<uint32_t>(count / (threads_ * 32u), 1u, 256u);
+        arena_.execute([&] {
+            tbb::parallel_for(
+                tbb::blocked_range<uint64_t>(begin, uint64_t(begin) + count, block),
+                [&](const tbb::blocked_range<uint64_t>& range) {
+                    const FlushDenormals flush;
+                    CpuInvocation part = call;
+                    part.begin = uint32_t(range.begin());
+                    part.end = uint32_t(range.end());
+                    cpu_kernel.run_(part);
+                },
+                tbb::simple_partitioner{});
+        });
+        statistics_.kernel_s[cpu_kernel.file_] += seconds_since(start);
+        if (unfinished)
+            throw MachineError(fmt::format("error: kernel {} could not finish a loop within its bound; the image would be wrong", cpu_kernel.file_));
+    }
+
+    DeviceStatistics statistics() const override {
+        DeviceStatistics result = statistics_;
+        result.memory_bytes = meter_->now;
+        result.peak_memory_bytes = meter_->peak;
+        return result;
+    }
+
+ private:
+    static constexpr size_t kMaxKernelBuffers = 32;
+    CpuTracerKind tracer_;
+    std::shared_ptr<MemoryMeter> meter_;
+    unsigned threads_ = 1;
+    tbb::task_arena arena_;
+    DeviceStatistics statistics_;
+};
+
+DeviceInfo processor(const char* backend, const char* driver) {
+    DeviceInfo info;
+    info.backend = backend;
+    info.name = processor_name();
+    info.driver = driver;
+    info.features["threads"] = std::to_string(std::thread::hardware_concurrency());
+    return info;
+}
+
+const BackendRegistration cpu(
+    "cpu", "C++ kernels on all processors, rays traced by Embree",
+    [](const DeviceOptions& options) { return std::make_unique<CpuDevice>(CpuTracerKind::embree, options); },
+    [] { return std::vector<DeviceInfo>{processor("cpu", "Embree " RTC_VERSION_STRING)}; });
+
+}  // namespace
+}  // namespace lampyris

@@ -1,0 +1,31 @@
+// A scene as the CPU backend holds it: pointers into the host's arrays, and a ray tracer.
+#pragma once
+
+#include "core/device.h"
+#include "core/kernel_registry.h"
+
+#include <array>
+#include <memory>
+
+namespace lampyris {
+
+class EmbreeScene;
+
+class CpuScene final : public DeviceScene {
+ public:
+    static constexpr size_t kBufferCount = 24;  // of core/kernel/bindings.h, with room
+    CpuScene(const Scene& scene, CpuTracerKind tracer);
+    ~CpuScene() override;
+    void* const* buffers() const { return buffers_.data(); }
+    const CpuTracer& tracer() const { return tracer_; }
+    size_t memory_bytes() const { return memory_; }
+    const EmbreeScene* embree() const { return embree_.get(); }
+
+ private:
+    std::array<void*, kBufferCount> buffers_{};
+    std::unique_ptr<EmbreeScene> embree_;
+    CpuTracer tracer_;
+    size_t memory_ = 0;
+};
+
+}  // namespace lampyris

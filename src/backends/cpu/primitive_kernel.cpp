@@ -1,0 +1,77 @@
+#include "backends/cpu/primitive_kernel.h"
+
+#define KERNEL_TRACER_embree 1
+#include "core/kernel/cpp_kernel.h"
+#include "core/scene/scene.h"
+
+#include <limits>
+
+namespace lampyris {
+namespace kernel {
+namespace {
+
+template <uint kEffects>
+struct PrimitiveKernel {
+    void* const* scene_buffers_;
+    void* const* kernel_buffers_;
+    const CpuTracer* tracer_;
+    uint* unfinished_;
+#include "core/kernel/scene.h"
+};
+
+}  // namespace
+}  // namespace kernel
+
+#if !__has_include("core/kernel/shapes.h")
+bool primitive_hit(void* const*, uint32_t, uint32_t, const float*, const float*, float, float&) { return false; }
+#else
+bool primitive_hit(void* const* scene_buffers, uint32_t geometry, uint32_t primitive, const float origin[3],
+                   const float direction[3], float t_max, float& t) {
+    kernel::PrimitiveKernel<kernel::kAllEffects> code{scene_buffers, nullptr, nullptr, nullptr};
+    const glm::vec3 o(origin[0], origin[1], origin[2]), d(direction[0], direction[1], direction[2]);
+    if (code.geometries[geometry].data.x == kernel::GEOMETRY_BILINEAR) {
+        glm::vec2 uv;
+        return code.bilinear_hit(geometry, primitive, o, d, t_max, t, uv);
+    }
+    return code.quadric_hit(geometry, o, d, t_max, t);
+}
+#endif
+
+PrimitiveBounds primitive_bounds(const Scene& scene, uint32_t geometry, uint32_t primitive) {
+    const kernel::GeometryRecord& record = scene.geometries[geometry];
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    PrimitiveBounds bounds{glm::vec3(kInfinity), glm::vec3(-kInfinity)};
+    const auto extend = [&](const glm::vec3& p) {
+        bounds.low = glm::min(bounds.low, p);
+        bounds.high = glm::max(bounds.high, p);
+    };
+    if (record.data.x == kernel::GEOMETRY_BILINEAR) {
+        for (uint32_t i = 0; i < 4; ++i) {
+            const float* p = &scene.positions[3 * size_t(record.data.w + scene.indices[record.data.z + 4 * primitive + i])];
+            extend({p[0], p[1], p[2]});
+        }
+    } else {
+        // The full quadric's box: sweeps cut by phimax keep it, which costs a few rays and no correctness.
+        glm::vec3 low, high;
+        const glm::vec4& q = record.params;
+        if (record.data.x == kernel::GEOMETRY_DISK) {
+            low = {-q.y, -q.y, q.x};
+            high = {q.y, q.y, q.x};
+        } else {
+            low = {-q.x, -q.x, q.y};
+            high = {q.x, q.x, q.z};
+        }
+        const kernel::TransformRecord& m = scene.transforms[record.ids.w];
+        for (int corner = 0; corner < 8; ++corner) {
+            const glm::vec4 p(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z, 1.0f);
+            extend({glm::dot(m.to0, p), glm::dot(m.to1, p), glm::dot(m.to2, p)});
+        }
+    }
+    // Room for the rounding of hits that lie on the box.
+    const glm::vec3 slack = 4e-6f * glm::max(glm::abs(bounds.low), glm::abs(bounds.high)) + 1e-30f;
+    bounds.low -= slack;
+    bounds.high += slack;
+    return bounds;
+}
+
+}  // namespace lampyris
