@@ -6,7 +6,7 @@
 
 #include <cstdint>
 #include <deque>
-#include <mutex>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -47,11 +47,13 @@ struct Location {
 };
 
 // The texts that were read, kept so that a Location can be shown as line, column and excerpt.
-// Text is kept by view: the owner (a mapped file, a string) must outlive Sources, or hand over a string to keep.
+// Text is kept by view, with a share of its owner (a mapped file) where one is handed over; otherwise the owner must
+// outlive Sources.
 class Sources {
  public:
-    uint32_t add(std::string name, std::string_view text);
+    uint32_t add(std::string name, std::string_view text, std::shared_ptr<const void> owner = nullptr);
     uint32_t add_owned(std::string name, std::string text);
+    std::string_view text(uint32_t file) const;
     struct Place {
         std::string file;
         uint64_t line = 0;    // from 1
@@ -66,6 +68,7 @@ class Sources {
         std::string name;
         std::string owned;
         std::string_view text;
+        std::shared_ptr<const void> owner;
     };
     std::deque<Source> sources_;
 };
@@ -74,12 +77,14 @@ class Sources {
 class Diagnostics {
  public:
     explicit Diagnostics(const Sources& sources) : sources_(&sources) {}
-    // `hint` says what would have been right ("did you mean ...", "valid types are ..."); it ends the message.
+    // `hint` says what would have been right ("did you mean ...", "valid types are ..."); it ends the message, after a
+    // semicolon unless it starts with a space.
     void error(Location location, std::string message, std::string hint = {});
     void warning(Location location, std::string message, std::string hint = {});
     // A known part of the format that Lampyris does not simulate: an error, or, with skip_unsupported, a warning that is
     // remembered for the statistics.
     void unsupported(Location location, std::string what, std::string hint = {});
+    const Sources& sources() const { return *sources_; }
     void set_skip_unsupported(bool skip) { skip_unsupported_ = skip; }
 
     bool has_errors() const { return error_count_ > 0; }
@@ -87,7 +92,11 @@ class Diagnostics {
     void throw_if_errors() const;
     const std::vector<std::string>& warnings() const { return warnings_; }          // formatted, with location
     const std::vector<std::string>& unsupported_list() const { return skipped_; }   // "what (file:line)"
+    bool full() const { return error_count_ > kMaxShown; }  // nobody will read a further error's text
+    size_t error_count() const { return error_count_; }
+    const std::vector<std::string>& errors() const { return errors_; }  // formatted, the first kMaxShown
     static constexpr size_t kMaxShown = 20;
+    static constexpr size_t kMaxWarnings = 200;
 
  private:
     std::string format(const char* severity, Location location, const std::string& message, const std::string& hint) const;
@@ -101,5 +110,7 @@ class Diagnostics {
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
 // "a, b, c" in the order given.
 std::string list_of(const std::vector<std::string>& candidates);
+// A piece of input fit to stand in a message: cut when long, without control characters.
+std::string shown(std::string_view text);
 
 }  // namespace lampyris

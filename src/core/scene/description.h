@@ -29,11 +29,13 @@ struct Parameter {
     std::string name;
     Location location;        // of the "type name" string
     Location value_location;  // of the first value
+    std::string_view color_space = "srgb";  // that rgb values are given in: one of kColorSpaces
     std::variant<std::vector<float>, std::vector<int32_t>, std::vector<uint8_t>, std::vector<std::string>> values;
     mutable bool used = false;  // set by the getters; what is left unused is an error
 };
 
 const char* type_name(ParameterType type);  // "point3", ...
+inline constexpr std::array<std::string_view, 4> kColorSpaces{"srgb", "rec2020", "aces2065-1", "dci-p3"};
 
 // The parameters of one directive. Getters mark a parameter as used, and report a wrong type or count to Diagnostics
 // (returning the default). Getting by a name that is there with another type is an error that names both types.
@@ -57,6 +59,8 @@ class ParameterList {
     // The whole array of a parameter (P, N, uv, indices); empty when absent. Moves the storage out: large meshes are not copied.
     std::vector<float> take_floats(std::string_view name, ParameterType type, Diagnostics& diagnostics);
     std::vector<int32_t> take_ints(std::string_view name, Diagnostics& diagnostics);
+    // Adds those that are missing here (Attribute's defaults). They count as used: one may apply to some types only.
+    void add_defaults(const std::vector<Parameter>& defaults);
     // Every parameter that no getter asked for becomes an error, with the known names as hint.
     void report_unused(const std::string& of_what, const std::vector<std::string>& known, Diagnostics& diagnostics) const;
 };
@@ -128,8 +132,9 @@ struct SceneDescription {
     std::string directory;  // of the scene file: what relative file names in it are relative to
     CameraDescription camera;
     Entity sampler, film, pixel_filter, integrator, accelerator;  // not given(): pbrt's defaults
-    ParameterList options;
-    std::string color_space = "srgb";
+    ParameterList options;  // of Option directives; names in lower case without "_" and "-", as pbrt compares them
+    std::string color_space = "srgb";  // of the film: the one in force at the Film directive
+    float transform_start_time = 0.0f, transform_end_time = 1.0f;  // when the two matrices of an AnimatedTransform hold
     std::vector<TextureDescription> textures;  // in order of definition; float and spectrum textures have separate names
     std::vector<MaterialDescription> materials;
     std::vector<MediumDescription> media;

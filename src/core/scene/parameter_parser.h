@@ -1,0 +1,39 @@
+// Reads parameter lists: `"type name" value` or `"type name" [ values ]`, as many as follow.
+#pragma once
+
+#include "core/scene/description.h"
+#include "core/scene/pbrt_v3.h"
+#include "core/scene/tokenizer.h"
+
+namespace lampyris {
+
+class ParameterParser {
+ public:
+    ParameterParser(Diagnostics& diagnostics, OldFormat& old_format) : diagnostics_(&diagnostics), old_format_(&old_format) {}
+    // Up to the first token that starts no parameter. What is wrong is reported, and reading goes on behind it.
+    std::vector<Parameter> parse(Tokenizer& tokenizer, std::string_view color_space);
+
+ private:
+    bool parse_declaration(Tokenizer& tokenizer, const Token& token, Parameter& parameter);
+    bool parse_values(Tokenizer& tokenizer, Parameter& parameter);
+    template <typename T>
+    bool parse_numbers(Tokenizer& tokenizer, const Parameter& parameter, std::vector<T>& values);
+    bool parse_words(Tokenizer& tokenizer, Parameter& parameter);
+    bool parse_word(Tokenizer& tokenizer, const Token& token, Parameter& parameter);
+    bool check_count(const Parameter& parameter);
+    bool missing_value(const Parameter& parameter, const Token& found);
+    bool ends_unclosed(Tokenizer& tokenizer, const Parameter& parameter, Location open);
+    void skip_values(Tokenizer& tokenizer);
+    void wrong_value(const Parameter& parameter, const Token& token, const char* expected);
+
+    Diagnostics* diagnostics_;
+    OldFormat* old_format_;
+    // Arrays are read into these and copied when small, so that small ones have no slack and large ones no second copy.
+    std::vector<float> floats_;
+    std::vector<int32_t> ints_;
+};
+
+// A word that starts a directive ("Shape"): where reading goes on after an error. Defined with the directives' table.
+bool is_directive(std::string_view word);
+
+}  // namespace lampyris
