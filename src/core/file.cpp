@@ -2,14 +2,14 @@
 
 #include "core/error.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
-#include <fcntl.h>
 #include <filesystem>
-#include <sys/stat.h>
-#include <unistd.h>
 #include <utility>
 
 namespace lampyris {
@@ -74,10 +74,12 @@ void write_file_atomically(const std::string& path, std::span<const std::byte> b
         return;
     }
     const std::string temporary = temporary_beside(target);
-    Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, exists ? info.st_mode & 07777 : 0666));
+    Descriptor file(
+        ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, exists ? info.st_mode & 07777 : 0666));
     if (file.get() < 0) fail(path, errno);
     int error = write_all(file.get(), bytes);
-    if (error == 0 && ::fsync(file.get()) != 0 && errno != EINVAL) error = errno;  // EINVAL: a file system without fsync
+    if (error == 0 && ::fsync(file.get()) != 0 && errno != EINVAL)
+        error = errno;  // EINVAL: a file system without fsync
     if (file.close() != 0 && error == 0) error = errno;
     if (error == 0 && ::rename(temporary.c_str(), target.c_str()) != 0) error = errno;
     if (error != 0) {
@@ -100,8 +102,10 @@ void check_writable(const std::string& path) {
     fs::path folder = fs::path(target).parent_path();
     if (folder.empty()) folder = ".";
     if (::stat(folder.c_str(), &info) != 0)
-        throw InputError(fmt::format("cannot write '{}': the folder '{}' cannot be opened: {}", path, folder.string(), std::strerror(errno)));
-    if (!S_ISDIR(info.st_mode)) throw InputError(fmt::format("cannot write '{}': '{}' is not a folder", path, folder.string()));
+        throw InputError(fmt::format("cannot write '{}': the folder '{}' cannot be opened: {}", path, folder.string(),
+                                     std::strerror(errno)));
+    if (!S_ISDIR(info.st_mode))
+        throw InputError(fmt::format("cannot write '{}': '{}' is not a folder", path, folder.string()));
     // access() would answer for the real user; only trying tells what the file system (read-only, quota) really allows.
     const std::string temporary = temporary_beside(target);
     const int fd = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);

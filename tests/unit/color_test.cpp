@@ -1,15 +1,16 @@
 // Light to display values: the views of our OpenColorIO configuration against the formulas that they stand for.
-#include "core/error.h"
 #include "core/image/color.h"
+
+#include "core/error.h"
 #include "core/image/image_io.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <unistd.h>
 
 namespace lampyris {
 namespace {
@@ -49,18 +50,21 @@ TEST(Color, StandardIsTheSrgbCurve) {
     Image image = greys(light);
     apply_view(image, "Standard", 0.0f);
     // OpenColorIO joins the two pieces where they meet smoothly, the standard at 0.0031308: they differ by 1e-5 there.
-    for (size_t i = 0; i < light.size(); ++i) EXPECT_NEAR(image.at(int(i), 0, 1), srgb_from_linear(light[i]), 2e-5f) << light[i];
+    for (size_t i = 0; i < light.size(); ++i)
+        EXPECT_NEAR(image.at(int(i), 0, 1), srgb_from_linear(light[i]), 2e-5f) << light[i];
 }
 
 TEST(Color, EightBitsRoundToNearest) {
     // IEC 61966-2-1: 0.5 -> 0.735357 -> 187.5; 0.18 -> 0.461356 -> 117.6; 0.001 -> 0.01292 -> 3.29
-    const std::vector<uint8_t> bytes = display_bytes(greys({0.0f, 0.001f, 0.18f, 0.5f, 1.0f, 7.0f, -1.0f}), "Standard", 0.0f);
+    const std::vector<uint8_t> bytes =
+        display_bytes(greys({0.0f, 0.001f, 0.18f, 0.5f, 1.0f, 7.0f, -1.0f}), "Standard", 0.0f);
     const std::vector<uint8_t> expected{0, 3, 118, 188, 255, 255, 0};
     for (size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(bytes[3 * i], expected[i]) << i;
 }
 
 TEST(Color, ExposureCountsStops) {
-    EXPECT_EQ(display_bytes(greys({0.1f, 0.02f}), "Standard", 2.0f), display_bytes(greys({0.4f, 0.08f}), "Standard", 0.0f));
+    EXPECT_EQ(display_bytes(greys({0.1f, 0.02f}), "Standard", 2.0f),
+              display_bytes(greys({0.4f, 0.08f}), "Standard", 0.0f));
     EXPECT_EQ(display_bytes(greys({0.4f}), "ACES", -1.0f), display_bytes(greys({0.2f}), "ACES", 0.0f));
 }
 
@@ -106,7 +110,8 @@ TEST(Color, NonFiniteLightIsShownNotPropagated) {
 }
 
 TEST(Color, PngHoldsWhatTheViewShows) {
-    const std::string path = (std::filesystem::temp_directory_path() / ("lampyris-view-" + std::to_string(::getpid()) + ".png")).string();
+    const std::string path =
+        (std::filesystem::temp_directory_path() / ("lampyris-view-" + std::to_string(::getpid()) + ".png")).string();
     const Image image = greys({0.05f, 0.5f, 2.0f});
     WriteOptions options;
     options.view = "ACES";

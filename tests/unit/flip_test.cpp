@@ -1,6 +1,7 @@
 // Our FLIP against the authors' (flip-evaluator; data/flip_expected.py made the numbers), and its properties.
-#include "core/error.h"
 #include "core/image/flip.h"
+
+#include "core/error.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -39,7 +40,8 @@ Pair make(int width, int height, double peak, double amount, uint32_t seed) {
             for (int c = 0; c < 3; ++c) {
                 const double value = reference_value(x, y, c, width, height, peak);
                 pair.reference.at(x, y, c) = float(value);
-                pair.image.at(x, y, c) = float(value * (1.0 + amount * (noise(uint32_t(x), uint32_t(y), uint32_t(c), seed) - 0.5)));
+                pair.image.at(x, y, c) =
+                    float(value * (1.0 + amount * (noise(uint32_t(x), uint32_t(y), uint32_t(c), seed) - 0.5)));
             }
     for (int c = 0; c < 3; ++c) pair.image.at(width / 2, height / 2, c) *= 2.0f;
     return pair;
@@ -127,7 +129,8 @@ TEST(Magma, GoesFromBlackToPaleYellowWithRisingLuminance) {
         return 0.2126f * linear_from_srgb(float(c[0]) / 255.0f) + 0.7152f * linear_from_srgb(float(c[1]) / 255.0f) +
                0.0722f * linear_from_srgb(float(c[2]) / 255.0f);
     };
-    for (int i = 8; i <= 248; i += 8) EXPECT_GT(luminance(magma(float(i) / 255.0f)), luminance(magma(float(i - 8) / 255.0f))) << i;
+    for (int i = 8; i <= 248; i += 8)
+        EXPECT_GT(luminance(magma(float(i) / 255.0f)), luminance(magma(float(i - 8) / 255.0f))) << i;
 }
 
 }  // namespace

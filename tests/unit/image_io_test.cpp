@@ -1,21 +1,22 @@
 // Images to files and back: what must survive does, and what cannot be read or written says why.
+#include "core/image/image_io.h"
+
 #include "core/error.h"
 #include "core/file.h"
-#include "core/image/image_io.h"
 #include "core/image/pfm.h"
 
-#include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
-
-#include <bit>
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <csignal>
-#include <limits>
+#include <OpenImageIO/imageio.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include <bit>
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <limits>
 
 namespace lampyris {
 namespace {
@@ -68,8 +69,9 @@ std::string message_of(F&& f, ExitCode expected) {
 
 TEST_F(ImageIo, ExrKeepsEveryBitOfEveryChannel) {
     // 67 x 41 is no multiple of the tile.
-    const Image image = sample_image(67, 41, {"R", "G", "B", "albedo.R", "albedo.G", "albedo.B", "depth.Z", "normal.X", "normal.Y",
-                                              "normal.Z", "samples", "variance.B", "variance.G", "variance.R"});
+    const Image image = sample_image(67, 41,
+                                     {"R", "G", "B", "albedo.R", "albedo.G", "albedo.B", "depth.Z", "normal.X",
+                                      "normal.Y", "normal.Z", "samples", "variance.B", "variance.G", "variance.R"});
     write_image(path("a.exr"), image);
     const Image read = read_image(path("a.exr"));
     expect_same_bits(image, read.select(image.channel_names));
@@ -79,7 +81,9 @@ TEST_F(ImageIo, ExrKeepsEveryBitOfEveryChannel) {
 
 TEST_F(ImageIo, ExrIsTiledAndKeepsMetadata) {
     Image image = sample_image(100, 70, {"R", "G", "B"});
-    image.metadata = {{"lampyris:scene", "scenes/demo.pbrt"}, {"lampyris:seed", "7"}, {"lampyris:parameters", "{\"maxdepth\": 12}"},
+    image.metadata = {{"lampyris:scene", "scenes/demo.pbrt"},
+                      {"lampyris:seed", "7"},
+                      {"lampyris:parameters", "{\"maxdepth\": 12}"},
                       {"Software", "lampyris 0.1.0"}};
     write_image(path("a.exr"), image);
     std::map<std::string, std::string> metadata = read_image(path("a.exr")).metadata;
@@ -184,9 +188,14 @@ TEST_F(ImageIo, PfmIsReadAsTheFormatIsDefined) {
 
 TEST_F(ImageIo, BadPfmSaysWhatIsWrong) {
     const std::vector<std::pair<std::string, std::string>> cases = {
-        {"PF\n2 2\n-1.0\nabc", "cut short"},   {"PF\n0 2\n-1.0\n", "0x2"},      {"PF\nx 2\n-1.0\n", "width is 'x'"},
-        {"PF\n2 2\n0\n", "scale"},             {"PF\n", "width is ''"},         {"PF\n2147483647 2147483647\n-1\n", "cut short"},
-        {"PF\n99999999999 2\n-1.0\n", "width"}, {"PF\n2 -2\n-1.0\n", "2x-2"},
+        {"PF\n2 2\n-1.0\nabc", "cut short"},
+        {"PF\n0 2\n-1.0\n", "0x2"},
+        {"PF\nx 2\n-1.0\n", "width is 'x'"},
+        {"PF\n2 2\n0\n", "scale"},
+        {"PF\n", "width is ''"},
+        {"PF\n2147483647 2147483647\n-1\n", "cut short"},
+        {"PF\n99999999999 2\n-1.0\n", "width"},
+        {"PF\n2 -2\n-1.0\n", "2x-2"},
     };
     for (const auto& [bytes, expected] : cases) {
         write_bytes("bad.pfm", bytes);
@@ -211,21 +220,27 @@ TEST_F(ImageIo, PngIsReadAsLightOrAsStored) {
 }
 
 TEST_F(ImageIo, UnreadableFilesAreNamedWithTheReason) {
-    EXPECT_NE(message_of([&] { read_image(path("none.exr")); }, ExitCode::kBadInput).find("No such file"), std::string::npos);
+    EXPECT_NE(message_of([&] { read_image(path("none.exr")); }, ExitCode::kBadInput).find("No such file"),
+              std::string::npos);
     EXPECT_NE(message_of([&] { read_image(folder_.string()); }, ExitCode::kBadInput).find("folder"), std::string::npos);
     write_bytes("empty.png", "");
     EXPECT_NE(message_of([&] { read_image(path("empty.png")); }, ExitCode::kBadInput).find("empty"), std::string::npos);
     write_bytes("noise.exr", "this is no picture at all, whatever its name says");
-    EXPECT_NE(message_of([&] { read_image(path("noise.exr")); }, ExitCode::kBadInput).find("noise.exr"), std::string::npos);
+    EXPECT_NE(message_of([&] { read_image(path("noise.exr")); }, ExitCode::kBadInput).find("noise.exr"),
+              std::string::npos);
     // A whole file that was cut in the middle.
     write_image(path("whole.exr"), sample_image(200, 200, {"R", "G", "B"}));
     fs::resize_file(path("whole.exr"), fs::file_size(path("whole.exr")) / 2);
-    EXPECT_NE(message_of([&] { read_image(path("whole.exr")); }, ExitCode::kBadInput).find("whole.exr"), std::string::npos);
+    EXPECT_NE(message_of([&] { read_image(path("whole.exr")); }, ExitCode::kBadInput).find("whole.exr"),
+              std::string::npos);
 }
 
 TEST_F(ImageIo, UnknownExtensionListsTheKnownOnes) {
-    const std::string message =
-        message_of([&] { write_image(path("a.gif"), sample_image(4, 4, {"R", "G", "B"})); }, ExitCode::kBadInput);
+    const std::string message = message_of(
+        [&] {
+            write_image(path("a.gif"), sample_image(4, 4, {"R", "G", "B"}));
+        },
+        ExitCode::kBadInput);
     EXPECT_NE(message.find(".exr, .pfm, .png"), std::string::npos) << message;
     EXPECT_THROW(check_image_output(path("missing-folder/a.exr")), InputError);
     EXPECT_NO_THROW(check_image_output(path("a.EXR")));
@@ -268,12 +283,14 @@ TEST_F(ImageIo, AFailedWriteLeavesTheOldFileAlone) {
     EXPECT_EQ(WEXITSTATUS(status), 42);
     std::ifstream file(target);
     EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "first");
-    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);  // no temporary file is left
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()),
+              1);  // no temporary file is left
 }
 
 TEST_F(ImageIo, AFolderWithoutPermissionIsTold) {
     fs::create_directory(path("closed"));
-    fs::permissions(path("closed"), fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read | fs::perms::others_exec);
+    fs::permissions(path("closed"),
+                    fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read | fs::perms::others_exec);
     fs::permissions(folder_, fs::perms::all);
     const pid_t child = ::fork();
     ASSERT_GE(child, 0);

@@ -1,6 +1,7 @@
 // The metrics against numbers worked out by hand from their formulas (docs/metrics.md).
-#include "core/error.h"
 #include "core/image/metrics.h"
+
+#include "core/error.h"
 
 #include <gtest/gtest.h>
 
@@ -68,7 +69,8 @@ TEST(Metrics, NothingLeftIsNotANumber) {
     const Image nothing = image_of(1, 1, {kNan, 0, 0});
     const Comparison comparison = compare_images(nothing, nothing);
     EXPECT_EQ(comparison.metrics.non_finite, 1u);
-    for (const MetricFormula& formula : metric_formulas()) EXPECT_TRUE(std::isnan(comparison.metrics.*formula.value)) << formula.key;
+    for (const MetricFormula& formula : metric_formulas())
+        EXPECT_TRUE(std::isnan(comparison.metrics.*formula.value)) << formula.key;
     EXPECT_TRUE(std::isnan(comparison.flip));
 }
 

@@ -3,8 +3,8 @@
 #include "core/error.h"
 #include "core/image/color_config.h"
 
-#include <OpenColorIO/OpenColorIO.h>
 #include <fmt/format.h>
+#include <OpenColorIO/OpenColorIO.h>
 
 #include <algorithm>
 #include <cmath>
@@ -60,7 +60,8 @@ std::vector<std::string> view_names() {
 void check_view(const std::string& view) {
     const std::vector<std::string> names = view_names();
     if (std::find(names.begin(), names.end(), view) == names.end())
-        throw InputError(fmt::format("there is no view '{}'{}; the views are {}", view, did_you_mean(view, names), list_of(names)));
+        throw InputError(
+            fmt::format("there is no view '{}'{}; the views are {}", view, did_you_mean(view, names), list_of(names)));
 }
 
 void apply_view(Image& rgb, const std::string& view, float exposure) {

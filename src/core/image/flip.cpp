@@ -59,9 +59,10 @@ Plane filter_y(const Plane& in, Size size, const Taps& taps) {
 }
 
 // Linear Rec.709 to XYZ, as rationals in the authors' supplement; white is its image of (1, 1, 1), so that Y = 1.
-const glm::dmat3 kXyzFromRgb = glm::transpose(glm::dmat3(10135552.0 / 24577794.0, 8788810.0 / 24577794.0, 4435075.0 / 24577794.0,   //
-                                                         2613072.0 / 12288897.0, 8788810.0 / 12288897.0, 887015.0 / 12288897.0,    //
-                                                         1425312.0 / 73733382.0, 8788810.0 / 73733382.0, 70074185.0 / 73733382.0));
+const glm::dmat3 kXyzFromRgb =
+    glm::transpose(glm::dmat3(10135552.0 / 24577794.0, 8788810.0 / 24577794.0, 4435075.0 / 24577794.0,  //
+                              2613072.0 / 12288897.0, 8788810.0 / 12288897.0, 887015.0 / 12288897.0,    //
+                              1425312.0 / 73733382.0, 8788810.0 / 73733382.0, 70074185.0 / 73733382.0));
 
 struct ColorSpaces {
     glm::mat3 white_relative_xyz_from_rgb, rgb_from_white_relative_xyz;
@@ -117,7 +118,8 @@ float redistribute_color_error(float difference, float largest) {
 struct SensitivityTerm {
     double a, b;
 };
-constexpr SensitivityTerm kAchromatic{1.0, 0.0047}, kRedGreen{1.0, 0.0053}, kBlueYellow[2] = {{34.1, 0.04}, {13.5, 0.025}};
+constexpr SensitivityTerm kAchromatic{1.0, 0.0047}, kRedGreen{1.0, 0.0053},
+    kBlueYellow[2] = {{34.1, 0.04}, {13.5, 0.025}};
 
 struct Filters {
     Taps achromatic, red_green, blue_yellow[2];
@@ -136,7 +138,8 @@ struct Filters {
                 line.push_back(std::exp(-kPi * kPi * x * x / term.b));
                 sum += line.back();
             }
-            volume = term.a * std::sqrt(kPi / term.b) * sum * sum;  // of the two-dimensional filter, before it is normalised
+            volume =
+                term.a * std::sqrt(kPi / term.b) * sum * sum;  // of the two-dimensional filter, before it is normalised
             return Taps(normalised(line, sum));
         };
         double volume[2];
@@ -193,7 +196,9 @@ Seen see(const std::vector<glm::vec3>& rgb, Size size, const Filters& filters) {
             luminance[i] = (ycc.x + 16.0f) / 116.0f;
         }
     });
-    const auto both_ways = [&](const Plane& plane, const Taps& taps) { return filter_y(filter_x(plane, size, taps), size, taps); };
+    const auto both_ways = [&](const Plane& plane, const Taps& taps) {
+        return filter_y(filter_x(plane, size, taps), size, taps);
+    };
     const Plane a = both_ways(planes[0], filters.achromatic), rg = both_ways(planes[1], filters.red_green);
     const Plane by0 = both_ways(planes[2], filters.blue_yellow[0]), by1 = both_ways(planes[2], filters.blue_yellow[1]);
 
@@ -216,8 +221,8 @@ Seen see(const std::vector<glm::vec3>& rgb, Size size, const Filters& filters) {
 }
 
 // LDR-FLIP of two pictures in [0, 1]; the larger of this and what is there goes into `error`.
-void accumulate(const std::vector<glm::vec3>& image, const std::vector<glm::vec3>& reference, Size size, const Filters& filters,
-                std::vector<float>& error) {
+void accumulate(const std::vector<glm::vec3>& image, const std::vector<glm::vec3>& reference, Size size,
+                const Filters& filters, std::vector<float>& error) {
     const Seen seen = see(image, size, filters), wanted = see(reference, size, filters);
     // Green against blue is the largest difference that a display can show (HPG 2020, section 4.1).
     const float largest =
@@ -235,7 +240,8 @@ void accumulate(const std::vector<glm::vec3>& image, const std::vector<glm::vec3
 
 std::vector<glm::vec3> colors_of(const Image& image) {
     std::vector<glm::vec3> colors(image.pixel_count());
-    for (size_t i = 0; i < colors.size(); ++i) colors[i] = {image.pixels[3 * i], image.pixels[3 * i + 1], image.pixels[3 * i + 2]};
+    for (size_t i = 0; i < colors.size(); ++i)
+        colors[i] = {image.pixels[3 * i], image.pixels[3 * i + 1], image.pixels[3 * i + 2]};
     return colors;
 }
 
@@ -246,24 +252,27 @@ double mean_of(const std::vector<float>& values) {
 }
 
 void check_inputs(const Image& image, const Image& reference) {
-    if (image.channels != 3 || reference.channels != 3 || image.width != reference.width || image.height != reference.height)
+    if (image.channels != 3 || reference.channels != 3 || image.width != reference.width ||
+        image.height != reference.height)
         throw InputError(fmt::format("FLIP compares two RGB images of one size, not {} with {} channels and {} with {}",
                                      image.size_text(), image.channels, reference.size_text(), reference.channels));
 }
 
 // ACES' curve as a quotient of quadratics: (n0 x^2 + n1 x + n2) / (d0 x^2 + d1 x + d2), with Narkowicz's fit and x scaled by 0.6.
-constexpr double kAcesNumerator[3] = {0.6 * 0.6 * 2.51, 0.6 * 0.03, 0.0}, kAcesDenominator[3] = {0.6 * 0.6 * 2.43, 0.6 * 0.59, 0.14};
+constexpr double kAcesNumerator[3] = {0.6 * 0.6 * 2.51, 0.6 * 0.03, 0.0},
+                 kAcesDenominator[3] = {0.6 * 0.6 * 2.43, 0.6 * 0.59, 0.14};
 
 glm::vec3 tone_mapped(glm::vec3 light) {
     const glm::vec3 x = glm::min(light, 1e6f);  // far beyond white, and its square is no infinity
-    const auto quadratic = [&](const double (&k)[3]) { return (float(k[0]) * x + float(k[1])) * x + float(k[2]); };
+    const auto quadratic = [&](const double(&k)[3]) { return (float(k[0]) * x + float(k[1])) * x + float(k[2]); };
     return glm::clamp(quadratic(kAcesNumerator) / quadratic(kAcesDenominator), 0.0f, 1.0f);
 }
 
 // The light that the curve maps to 0.85: brighter counts as over-exposed (EG 2021, section 3).
 double overexposed_light() {
     constexpr double kTarget = 0.85;
-    const double a = kAcesNumerator[0] - kTarget * kAcesDenominator[0], b = kAcesNumerator[1] - kTarget * kAcesDenominator[1],
+    const double a = kAcesNumerator[0] - kTarget * kAcesDenominator[0],
+                 b = kAcesNumerator[1] - kTarget * kAcesDenominator[1],
                  c = kAcesNumerator[2] - kTarget * kAcesDenominator[2];
     return (-b + std::sqrt(b * b - 4.0 * a * c)) / (2.0 * a);
 }
@@ -271,7 +280,8 @@ double overexposed_light() {
 // From the exposure at which the brightest pixel of the reference is just well exposed to that at which half of them are.
 void choose_exposures(const std::vector<glm::vec3>& reference, FlipResult& result) {
     std::vector<float> luminances;
-    for (const glm::vec3& color : reference) luminances.push_back(glm::dot(color, glm::vec3(0.2126f, 0.7152f, 0.0722f)));
+    for (const glm::vec3& color : reference)
+        luminances.push_back(glm::dot(color, glm::vec3(0.2126f, 0.7152f, 0.0722f)));
     const auto middle = luminances.begin() + std::ptrdiff_t(luminances.size() / 2);
     std::nth_element(luminances.begin(), middle, luminances.end());
     // As in flip-evaluator: the upper of two middle ones, and a floor that keeps a mostly black reference's range finite.

@@ -50,7 +50,8 @@ Image Image::select(const std::vector<std::string>& names) const {
     for (const std::string& name : names) {
         from.push_back(find_channel(name));
         if (from.back() < 0)
-            throw InputError(fmt::format("there is no channel '{}'; the channels are {}", name, list_of(channel_names)));
+            throw InputError(
+                fmt::format("there is no channel '{}'; the channels are {}", name, list_of(channel_names)));
     }
     return gather(*this, names, from);
 }
@@ -64,15 +65,17 @@ Image Image::rgb() const {
     for (int i = 0; i < channels; ++i)
         if (channel_names[size_t(i)] != "A") only = i, ++colours;
     if (colours == 1) return gather(*this, {"R", "G", "B"}, {only, only, only});
-    throw InputError(fmt::format("there are no channels R, G, B and no grey one; the channels are {}", list_of(channel_names)));
+    throw InputError(
+        fmt::format("there are no channels R, G, B and no grey one; the channels are {}", list_of(channel_names)));
 }
 
 Image Image::crop(const PixelBounds& bounds) const {
     if (bounds.x0 < 0 || bounds.y0 < 0 || bounds.x1 > width || bounds.y1 > height || bounds.x0 >= bounds.x1 ||
         bounds.y0 >= bounds.y1)
-        throw InputError(fmt::format("the crop {},{},{},{} (x0,y0,x1,y1 in pixels, x1 and y1 excluded) is empty or not inside the "
-                                     "image, which has {} pixels",
-                                     bounds.x0, bounds.y0, bounds.x1, bounds.y1, size_text()));
+        throw InputError(
+            fmt::format("the crop {},{},{},{} (x0,y0,x1,y1 in pixels, x1 and y1 excluded) is empty or not inside the "
+                        "image, which has {} pixels",
+                        bounds.x0, bounds.y0, bounds.x1, bounds.y1, size_text()));
     Image result = *this;
     result.width = bounds.width();
     result.height = bounds.height();
@@ -84,15 +87,17 @@ Image Image::crop(const PixelBounds& bounds) const {
     }
     result.pixels.clear();
     for (int row = bounds.y0; row < bounds.y1; ++row)
-        result.pixels.insert(result.pixels.end(), pixels.begin() + std::ptrdiff_t(index(bounds.x0, row, 0)),
-                             pixels.begin() + std::ptrdiff_t(index(bounds.x0, row, 0)) + std::ptrdiff_t(bounds.width()) * channels);
+        result.pixels.insert(
+            result.pixels.end(), pixels.begin() + std::ptrdiff_t(index(bounds.x0, row, 0)),
+            pixels.begin() + std::ptrdiff_t(index(bounds.x0, row, 0)) + std::ptrdiff_t(bounds.width()) * channels);
     return result;
 }
 
 void Image::add_channels(const std::vector<std::string>& names, const std::vector<float>& values) {
     const size_t added = names.size(), before = size_t(channels), count = pixel_count();
     if (values.size() != count * added)
-        throw InputError(fmt::format("{} values do not make {} channels of {} pixels", values.size(), added, size_text()));
+        throw InputError(
+            fmt::format("{} values do not make {} channels of {} pixels", values.size(), added, size_text()));
     std::vector<float> merged(count * (before + added));
     for (size_t i = 0; i < count; ++i) {
         float* to = merged.data() + i * (before + added);

@@ -25,8 +25,8 @@ struct Image {
     int width = 0;
     int height = 0;
     int channels = 0;
-    std::vector<std::string> channel_names;       // as in an EXR: "R", "G", "B", "A", "Y", "albedo.R", "depth.Z"
-    std::vector<float> pixels;                    // [height][width][channels]; scene-linear Rec.709 unless `encoding` says otherwise
+    std::vector<std::string> channel_names;  // as in an EXR: "R", "G", "B", "A", "Y", "albedo.R", "depth.Z"
+    std::vector<float> pixels;  // [height][width][channels]; scene-linear Rec.709 unless `encoding` says otherwise
     std::map<std::string, std::string> metadata;  // attributes of the file
     Encoding encoding = Encoding::kLinear;
     Storage storage = Storage::kFloat;

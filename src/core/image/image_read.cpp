@@ -3,8 +3,8 @@
 #include "core/image/image_io.h"
 #include "core/image/pfm.h"
 
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
+#include <OpenImageIO/imageio.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -39,7 +39,8 @@ bool is_pfm(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     char magic[3] = {};
     file.read(magic, 3);
-    return file && magic[0] == 'P' && (magic[1] == 'F' || magic[1] == 'f') && std::isspace(static_cast<unsigned char>(magic[2]));
+    return file && magic[0] == 'P' && (magic[1] == 'F' || magic[1] == 'f') &&
+           std::isspace(static_cast<unsigned char>(magic[2]));
 }
 
 Image read_pfm(const std::string& path) {
@@ -73,8 +74,8 @@ void check_plausible(const std::string& path, const OIIO::ImageSpec& spec) {
     constexpr uint64_t kFree = uint64_t(64) << 20, kMostPacked = 20000;
     const uint64_t promised = uint64_t(spec.image_bytes(true)), held = uint64_t(fs::file_size(path));
     if (promised > kFree && promised / kMostPacked > held)
-        fail(path, fmt::format("its header says {}x{} pixels of {} channels, but the file has only {} bytes", spec.width, spec.height,
-                               spec.nchannels, held));
+        fail(path, fmt::format("its header says {}x{} pixels of {} channels, but the file has only {} bytes",
+                               spec.width, spec.height, spec.nchannels, held));
 }
 
 Image read_with_openimageio(const std::string& path) {
@@ -97,12 +98,14 @@ Image read_with_openimageio(const std::string& path) {
         // OpenImageIO maps unsigned integers to 0..1; in an EXR they are numbers of things.
         for (int c = 0; c < spec.nchannels; ++c)
             if (spec.channelformat(c).basetype == OIIO::TypeDesc::UINT32)
-                for (size_t i = size_t(c); i < image.pixels.size(); i += size_t(spec.nchannels)) image.pixels[i] *= 4294967295.0f;
+                for (size_t i = size_t(c); i < image.pixels.size(); i += size_t(spec.nchannels))
+                    image.pixels[i] *= 4294967295.0f;
     } else if (is_integer) {
         const std::string space = spec.get_string_attribute("oiio:ColorSpace");
         image.encoding = space == "Linear" || space == "linear" ? Image::Encoding::kLinear : Image::Encoding::kSrgb;
     }
-    if (spec.full_width != spec.width || spec.full_height != spec.height || spec.x != spec.full_x || spec.y != spec.full_y) {
+    if (spec.full_width != spec.width || spec.full_height != spec.height || spec.x != spec.full_x ||
+        spec.y != spec.full_y) {
         image.x = spec.x - spec.full_x;
         image.y = spec.y - spec.full_y;
         image.full_width = spec.full_width;

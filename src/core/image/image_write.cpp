@@ -5,9 +5,10 @@
 #include "core/image/image_io.h"
 #include "core/image/pfm.h"
 
+#include <fmt/format.h>
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
-#include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
@@ -15,7 +16,6 @@
 #include <filesystem>
 #include <memory>
 #include <span>
-#include <unistd.h>
 
 namespace lampyris {
 namespace {
@@ -27,17 +27,20 @@ constexpr float kLargestHalf = 65504.0f;
 
 std::string extension_of(const std::string& path) {
     std::string extension = fs::path(path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
     const std::vector<std::string>& known = writable_extensions();
     if (std::find(known.begin(), known.end(), extension) == known.end())
-        throw InputError(fmt::format("cannot write '{}': its extension says no format that can be written; these can: {}", path,
-                                     list_of(known)));
+        throw InputError(
+            fmt::format("cannot write '{}': its extension says no format that can be written; these can: {}", path,
+                        list_of(known)));
     return extension;
 }
 
 void add_metadata(OIIO::ImageSpec& spec, const std::map<std::string, std::string>& metadata) {
     for (const auto& [name, value] : metadata)
-        if (name != "compression" && name.rfind("oiio:", 0) != 0 && name.rfind("openexr:", 0) != 0) spec.attribute(name, value);
+        if (name != "compression" && name.rfind("oiio:", 0) != 0 && name.rfind("openexr:", 0) != 0)
+            spec.attribute(name, value);
 }
 
 Bytes encode(const char* format, const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const void* pixels) {
@@ -46,7 +49,8 @@ Bytes encode(const char* format, const OIIO::ImageSpec& spec, OIIO::TypeDesc typ
     OIIO::Filesystem::IOVecOutput memory(buffer);
     const auto output = OIIO::ImageOutput::create(name);
     if (!output) throw MachineError(fmt::format("OpenImageIO cannot write {}: {}", format, OIIO::geterror()));
-    if (!output->set_ioproxy(&memory) || !output->open(name, spec) || !output->write_image(type, pixels) || !output->close())
+    if (!output->set_ioproxy(&memory) || !output->open(name, spec) || !output->write_image(type, pixels) ||
+        !output->close())
         throw MachineError(fmt::format("OpenImageIO cannot write {}: {}", format, output->geterror()));
     const auto bytes = std::as_bytes(std::span(buffer));
     return Bytes(bytes.begin(), bytes.end());
@@ -92,7 +96,8 @@ Bytes encode_exr(const Image& image, const WriteOptions& options, WriteResult& r
     return encode("exr", spec, OIIO::TypeDesc::FLOAT, pixels.data());
 }
 
-Bytes encode_png(int width, int height, const std::vector<uint8_t>& rgb, const std::map<std::string, std::string>& metadata) {
+Bytes encode_png(int width, int height, const std::vector<uint8_t>& rgb,
+                 const std::map<std::string, std::string>& metadata) {
     OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
     spec.attribute("oiio:ColorSpace", "sRGB");
     add_metadata(spec, metadata);
@@ -103,10 +108,13 @@ Bytes encode_png(int width, int height, const std::vector<uint8_t>& rgb, const s
 [[noreturn]] void rescue(const std::string& path, const Bytes& bytes, const MachineError& failure) {
     std::string saved;
     try {
-        saved = (fs::temp_directory_path() / fmt::format("lampyris-{}-{}", ::getpid(), fs::path(path).filename().string())).string();
+        saved =
+            (fs::temp_directory_path() / fmt::format("lampyris-{}-{}", ::getpid(), fs::path(path).filename().string()))
+                .string();
         write_file_atomically(saved, bytes);
     } catch (const std::exception&) {
-        throw MachineError(fmt::format("{} (and it could not be saved in the folder for temporary files either)", failure.what()));
+        throw MachineError(
+            fmt::format("{} (and it could not be saved in the folder for temporary files either)", failure.what()));
     }
     throw MachineError(fmt::format("{}; the image was saved as '{}'", failure.what(), saved));
 }
@@ -141,7 +149,8 @@ WriteResult write_image(const std::string& path, const Image& image, const Write
     } else if (extension == ".pfm") {
         bytes = encode_pfm(image.channels == 1 ? image : image.rgb());
     } else {
-        bytes = encode_png(image.width, image.height, display_bytes(image.rgb(), options.view, options.exposure), image.metadata);
+        bytes = encode_png(image.width, image.height, display_bytes(image.rgb(), options.view, options.exposure),
+                           image.metadata);
     }
     write_or_rescue(path, bytes);
     return result;
@@ -149,7 +158,8 @@ WriteResult write_image(const std::string& path, const Image& image, const Write
 
 void write_png(const std::string& path, int width, int height, const std::vector<uint8_t>& rgb,
                const std::map<std::string, std::string>& metadata) {
-    if (extension_of(path) != ".png") throw InputError(fmt::format("cannot write '{}': this picture is written as .png only", path));
+    if (extension_of(path) != ".png")
+        throw InputError(fmt::format("cannot write '{}': this picture is written as .png only", path));
     write_or_rescue(path, encode_png(width, height, rgb, metadata));
 }
 

@@ -23,7 +23,8 @@ bool finite_pixel(const float* image, const float* reference) {
 
 void check_same_size(const Image& image, const Image& reference) {
     if (image.width != reference.width || image.height != reference.height)
-        throw InputError(fmt::format("the image has {} pixels, but the reference has {}", image.size_text(), reference.size_text()));
+        throw InputError(
+            fmt::format("the image has {} pixels, but the reference has {}", image.size_text(), reference.size_text()));
 }
 
 }  // namespace
@@ -33,7 +34,8 @@ const std::vector<MetricFormula>& metric_formulas() {
         {"mse", "MSE", "mean (I-R)^2", &Metrics::mse},
         {"rmse", "RMSE", "sqrt MSE", &Metrics::rmse},
         {"relmse", "relMSE", "mean (I-R)^2 / (R^2 + 0.01)", &Metrics::relmse},
-        {"relmse_trimmed", "relMSE, trimmed", "relMSE without the 0.1 % of pixels where it is largest", &Metrics::relmse_trimmed},
+        {"relmse_trimmed", "relMSE, trimmed", "relMSE without the 0.1 % of pixels where it is largest",
+         &Metrics::relmse_trimmed},
         {"mape", "MAPE", "mean |I-R| / (|R| + 0.01)", &Metrics::mape},
         {"smape", "SMAPE", "mean 2 |I-R| / (|I| + |R| + 0.01)", &Metrics::smape},
     };
@@ -42,7 +44,8 @@ const std::vector<MetricFormula>& metric_formulas() {
 
 Metrics measure(std::span<const float> image, std::span<const float> reference) {
     if (image.size() != reference.size() || image.size() % 3 != 0)
-        throw InputError(fmt::format("{} and {} numbers are no two RGB images of one size", image.size(), reference.size()));
+        throw InputError(
+            fmt::format("{} and {} numbers are no two RGB images of one size", image.size(), reference.size()));
     const size_t count = image.size() / 3;
     Metrics metrics;
     std::vector<double> relative;  // per pixel, mean over its channels
@@ -82,7 +85,8 @@ Metrics measure(std::span<const float> image, std::span<const float> reference) 
 
     const size_t trimmed = size_t(std::floor(pixels * kTrimmedShare));
     if (trimmed > 0) {
-        std::nth_element(relative.begin(), relative.begin() + std::ptrdiff_t(trimmed), relative.end(), std::greater<>());
+        std::nth_element(relative.begin(), relative.begin() + std::ptrdiff_t(trimmed), relative.end(),
+                         std::greater<>());
         // Summed anew: subtracting a firefly of 1e30 would leave nothing of the rest.
         sum = 0.0;
         for (size_t i = trimmed; i < relative.size(); ++i) sum += relative[i];
@@ -105,7 +109,9 @@ Comparison compare_images(const Image& image, const Image& reference) {
     comparison.width = image.width;
     comparison.height = image.height;
     comparison.metrics = measure(shown.pixels, wanted.pixels);
-    const auto is_float = [](const Image& i) { return i.storage == Image::Storage::kFloat || i.storage == Image::Storage::kHalf; };
+    const auto is_float = [](const Image& i) {
+        return i.storage == Image::Storage::kFloat || i.storage == Image::Storage::kHalf;
+    };
     comparison.hdr = is_float(image) && is_float(reference);
 
     // FLIP looks at neighbourhoods, so left-out pixels need some value: one in which the images agree.

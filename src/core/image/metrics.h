@@ -23,8 +23,8 @@ struct Metrics {
 };
 
 struct MetricFormula {
-    const char* key;      // in JSON
-    const char* name;     // for people
+    const char* key;   // in JSON
+    const char* name;  // for people
     const char* formula;
     double Metrics::*value;
 };

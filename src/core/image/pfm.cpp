@@ -19,12 +19,14 @@ std::vector<std::byte> encode_pfm(const Image& image) {
     if (image.channels != 1 && image.channels != 3)
         throw InputError(fmt::format("PFM holds one or three channels, not {}", image.channels));
     // The sign of the scale says little-endian.
-    const std::string header = fmt::format("{}\n{} {}\n-1.0\n", image.channels == 3 ? "PF" : "Pf", image.width, image.height);
+    const std::string header =
+        fmt::format("{}\n{} {}\n-1.0\n", image.channels == 3 ? "PF" : "Pf", image.width, image.height);
     const size_t row_bytes = size_t(image.width) * size_t(image.channels) * sizeof(float);
     std::vector<std::byte> bytes(header.size() + row_bytes * size_t(image.height));
     std::memcpy(bytes.data(), header.data(), header.size());
     for (int y = 0; y < image.height; ++y)
-        std::memcpy(bytes.data() + header.size() + row_bytes * size_t(image.height - 1 - y), &image.pixels[image.index(0, y, 0)], row_bytes);
+        std::memcpy(bytes.data() + header.size() + row_bytes * size_t(image.height - 1 - y),
+                    &image.pixels[image.index(0, y, 0)], row_bytes);
     return bytes;
 }
 
@@ -59,15 +61,17 @@ Image decode_pfm(std::span<const std::byte> bytes) {
     const size_t row_values = size_t(width) * size_t(channels);
     const size_t available = position < text.size() ? (text.size() - position) / sizeof(float) : 0;
     if (available / row_values < size_t(height))
-        throw InputError(fmt::format("the PFM file is cut short: {}x{} pixels of {} channels need {} bytes, and {} follow the header", width,
-                                     height, channels, row_values * size_t(height) * sizeof(float),
-                                     position < text.size() ? text.size() - position : 0));
+        throw InputError(fmt::format(
+            "the PFM file is cut short: {}x{} pixels of {} channels need {} bytes, and {} follow the header", width,
+            height, channels, row_values * size_t(height) * sizeof(float),
+            position < text.size() ? text.size() - position : 0));
     Image image(width, height, channels == 3 ? std::vector<std::string>{"R", "G", "B"} : std::vector<std::string>{"Y"});
     const bool swap = scale > 0.0f;
     const float factor = std::fabs(scale);
     for (int y = 0; y < height; ++y) {
         float* row = &image.pixels[image.index(0, y, 0)];
-        std::memcpy(row, bytes.data() + position + size_t(height - 1 - y) * row_values * sizeof(float), row_values * sizeof(float));
+        std::memcpy(row, bytes.data() + position + size_t(height - 1 - y) * row_values * sizeof(float),
+                    row_values * sizeof(float));
         for (size_t i = 0; i < row_values; ++i) {
             if (swap) row[i] = std::bit_cast<float>(__builtin_bswap32(std::bit_cast<uint32_t>(row[i])));
             if (factor != 1.0f) row[i] *= factor;
