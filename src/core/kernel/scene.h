@@ -11,6 +11,8 @@
 #include "core/kernel/surface.h"
 #include "core/kernel/math.h"
 #include "core/kernel/random.h"
+#include "core/kernel/sampling.h"
 #include "core/kernel/texture.h"
+#include "core/kernel/bsdf.h"
 
 #endif

@@ -1,0 +1,111 @@
+// Glass: reflection and refraction, specular or by GGX microfacets (Walter et al. 2007; pbrt, 4th edition, sections 9.5
+// and 9.7), and thin panes.
+//
+// Both sides work alike: everything is turned so that wo.z > 0, and eta is then that of the side of -z over wo's side.
+// `lobes` restricts sampling (and its density) to LOBE_REFLECTION or LOBE_TRANSMISSION; LOBE_BOTH_SIDES asks for both.
+#ifndef LAMPYRIS_KERNEL_BSDF_DIELECTRIC
+#define LAMPYRIS_KERNEL_BSDF_DIELECTRIC
+
+// A surface is specular where it is smooth, and where the index hardly changes: microfacets then do not refract.
+FN bool dielectric_is_specular(vec2 alpha, float eta) { return ggx_is_smooth(alpha) || abs(eta - 1.0f) < 1e-4f; }
+
+// Probability of reflection under `lobes`, from Fresnel's reflectance r; negative where nothing can be chosen.
+FN float dielectric_choice(float r, uint lobes) {
+    if (lobes == LOBE_BOTH_SIDES) return r;
+    if (lobes == LOBE_REFLECTION) return r > 0.0f ? 1.0f : -1.0f;
+    return r < 1.0f ? 0.0f : -1.0f;
+}
+
+// Value and density of the rough refraction from o to i through the normal m, for o.z > 0 > i.z; do_m = dot(o, m) > 0 > di_m.
+// Walter et al. 2007, equations 17 and 21. `length2` is |o + eta i|^2 = (do_m + eta di_m)^2. Radiance is compressed into
+// the denser side: 1/eta^2 (there cancelling eta^2), importance is not.
+FN float rough_refraction_value(vec2 alpha, float eta, vec3 o, vec3 i, float d, float do_m, float di_m, float length2,
+                                uint transport) {
+    float value = 4.0f * d * ggx_visibility(o, i, alpha) * abs(do_m * di_m) / length2;
+    return transport == TRANSPORT_RADIANCE ? value : value * eta * eta;
+}
+FN float rough_refraction_pdf(vec2 alpha, float eta, vec3 o, float d, float do_m, float di_m, float length2) {
+    return ggx_visible_scale(o, alpha) * d * abs(do_m * di_m) * eta * eta / length2;
+}
+
+FN vec3 dielectric_eval(vec2 alpha, float eta_up, vec3 wo, vec3 wi, uint transport, uint lobes, OUT(float) pdf) {
+    pdf = 0.0f;
+    if (dielectric_is_specular(alpha, eta_up)) return vec3(0.0f);
+    bool below = wo.z < 0.0f;
+    vec3 o = below ? -wo : wo;
+    vec3 i = below ? -wi : wi;
+    float eta = below ? 1.0f / eta_up : eta_up;
+    bool reflected = i.z > 0.0f;
+    vec3 h = reflected ? o + i : o + eta * i;
+    float length2 = length_squared(h);
+    if (!(length2 > 1e-20f)) return vec3(0.0f);
+    vec3 m = (h.z < 0.0f ? -1.0f : 1.0f) / sqrt(length2) * h;
+    float do_m = dot3(o, m);
+    float di_m = dot3(i, m);
+    // Microfacets seen from behind scatter nothing.
+    if (!(do_m > 0.0f) || (di_m > 0.0f) != reflected) return vec3(0.0f);
+    float r = fresnel_dielectric(do_m, eta);
+    float choice = dielectric_choice(r, lobes);
+    float d = ggx_d(m, alpha);
+    if (reflected) {
+        pdf = max(choice, 0.0f) * 0.25f * ggx_visible_scale(o, alpha) * d;
+        return vec3(r * d * ggx_visibility(o, i, alpha));
+    }
+    if (choice >= 0.0f) pdf = (1.0f - choice) * rough_refraction_pdf(alpha, eta, o, d, do_m, di_m, length2);
+    return vec3((1.0f - r) * rough_refraction_value(alpha, eta, o, i, d, do_m, di_m, length2, transport));
+}
+
+FN bool dielectric_sample(vec2 alpha, float eta_up, vec3 wo, float uc, vec2 u, uint transport, uint lobes,
+                          INOUT(BsdfSample) s) {
+    bool below = wo.z < 0.0f;
+    vec3 o = below ? -wo : wo;
+    float eta = below ? 1.0f / eta_up : eta_up;
+    bool specular = dielectric_is_specular(alpha, eta_up);
+    vec3 m = specular ? vec3(0.0f, 0.0f, 1.0f) : ggx_sample_visible(o, alpha, u);
+    float do_m = dot3(o, m);
+    if (!(do_m > 0.0f)) return false;
+    float r = fresnel_dielectric(do_m, eta);
+    float choice = dielectric_choice(r, lobes);
+    if (choice < 0.0f) return false;
+    bool reflected = uc < choice;
+    vec3 i = 2.0f * do_m * m - o;
+    if (!reflected && !refract_direction(o, m, do_m, eta, i)) return false;
+    if (!(abs(i.z) >= MIN_COSINE) || (i.z > 0.0f) != reflected) return false;
+    float share = reflected ? r : 1.0f - r;
+    s.wi = below ? -i : i;
+    s.eta = reflected ? 1.0f : eta;
+    s.pdf = reflected ? choice : 1.0f - choice;
+    s.lobe = (reflected ? LOBE_REFLECTION : LOBE_TRANSMISSION) | (specular ? LOBE_SPECULAR : LOBE_GLOSSY);
+    float value = 0.0f;
+    if (specular) {
+        value = share / abs(i.z);
+        if (!reflected && transport == TRANSPORT_RADIANCE) value /= eta * eta;
+    } else {
+        float d = ggx_d(m, alpha);
+        if (reflected) {
+            value = share * d * ggx_visibility(o, i, alpha);
+            s.pdf *= 0.25f * ggx_visible_scale(o, alpha) * d;
+        } else {
+            float di_m = dot3(i, m);
+            float length2 = sqr(do_m + eta * di_m);
+            if (!(di_m < 0.0f) || !(length2 > 1e-20f)) return false;
+            value = share * rough_refraction_value(alpha, eta, o, i, d, do_m, di_m, length2, transport);
+            s.pdf *= rough_refraction_pdf(alpha, eta, o, d, do_m, di_m, length2);
+        }
+    }
+    s.f = vec3(value);
+    return s.pdf > 0.0f;
+}
+
+FN bool thin_dielectric_sample(float eta, vec3 wo, float uc, INOUT(BsdfSample) s) {
+    float c = abs(wo.z);
+    float r = pane_reflectance(fresnel_dielectric(c, eta));
+    bool reflected = uc < r;
+    s.wi = reflected ? vec3(-wo.x, -wo.y, wo.z) : -wo;
+    s.pdf = reflected ? r : 1.0f - r;
+    s.f = vec3(s.pdf / c);
+    s.lobe = (reflected ? LOBE_REFLECTION : LOBE_TRANSMISSION) | LOBE_SPECULAR;
+    return s.pdf > 0.0f;
+}
+
+#endif

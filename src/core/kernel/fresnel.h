@@ -1,0 +1,67 @@
+// Fresnel's equations, and refraction, for unpolarised light.
+//
+// `eta` is the index below the surface over the index on the incident side; `cos_i` the cosine of incidence, in [0, 1].
+#ifndef LAMPYRIS_KERNEL_FRESNEL
+#define LAMPYRIS_KERNEL_FRESNEL
+
+// Squared cosine of the refracted direction; not positive at total internal reflection. Written so that no digits cancel
+// for eta near 1 or at grazing incidence: eta^2 cos_t^2 = (eta^2 - 1) + cos_i^2.
+FN float refracted_cosine_squared(float cos_i, float eta) {
+    return ((eta - 1.0f) * (eta + 1.0f) + cos_i * cos_i) / (eta * eta);
+}
+
+// Reflected share of the power at a dielectric (pbrt, 4th edition, equation 9.6); 1 at total internal reflection.
+FN float fresnel_dielectric(float cos_i, float eta) {
+    float c = clamp(cos_i, 0.0f, 1.0f);
+    float cos2_t = refracted_cosine_squared(c, eta);
+    if (!(cos2_t > 0.0f)) return 1.0f;
+    float cos_t = sqrt(cos2_t);
+    float parallel = (eta * c - cos_t) / (eta * c + cos_t);
+    float perpendicular = (c - eta * cos_t) / (c + eta * cos_t);
+    return 0.5f * (parallel * parallel + perpendicular * perpendicular);
+}
+
+// Reflected share of the power at a conductor of index n + ik, one channel (Born and Wolf, section 14.2, with the
+// effective index a + ib inside: a^2 - b^2 = n^2 - k^2 - sin^2, a b = n k).
+FN float fresnel_conductor1(float cos_i, float n, float k) {
+    float c = clamp(cos_i, 0.0f, 1.0f);
+    float cos2 = c * c;
+    float sin2 = (1.0f - c) * (1.0f + c);
+    float n2 = n * n;
+    float k2 = k * k;
+    float difference = n2 - k2 - sin2;
+    float product = 2.0f * n * k;
+    float sum = sqrt(difference * difference + product * product);  // a^2 + b^2
+    // (sum + difference) / 2, or the same over its conjugate where the two cancel.
+    float a2 = difference >= 0.0f ? 0.5f * (sum + difference) : 0.5f * product * product / (sum - difference);
+    float a = sqrt(a2);
+    float t1 = sum + cos2;
+    float t2 = 2.0f * c * a;
+    if (!(t1 + t2 > 0.0f)) return 1.0f;
+    float rs = (t1 - t2) / (t1 + t2);
+    float t3 = cos2 * sum + sin2 * sin2;
+    float t4 = t2 * sin2;
+    float rp = t3 + t4 > 0.0f ? rs * ((t3 - t4) / (t3 + t4)) : rs;
+    return clamp(0.5f * (rs + rp), 0.0f, 1.0f);
+}
+
+FN vec3 fresnel_conductor(float cos_i, vec3 n, vec3 k) {
+    return vec3(fresnel_conductor1(cos_i, n.x, k.x), fresnel_conductor1(cos_i, n.y, k.y),
+                fresnel_conductor1(cos_i, n.z, k.z));
+}
+
+// Direction of w (pointing away from the surface, dot(w, n) = cos_i > 0) after refraction through the surface with
+// normal n; false at total internal reflection.
+FN bool refract_direction(vec3 w, vec3 n, float cos_i, float eta, OUT(vec3) refracted) {
+    refracted = vec3(0.0f, 0.0f, -1.0f);
+    float cos2_t = refracted_cosine_squared(cos_i, eta);
+    if (!(cos2_t > 0.0f)) return false;
+    refracted = (cos_i / eta - sqrt(cos2_t)) * n - w / eta;
+    return true;
+}
+
+// A pane's reflected share, all internal reflections included, from that of one interface: R' = R + T^2 R / (1 - R^2)
+// (pbrt, 4th edition, section 9.5.1).
+FN float pane_reflectance(float r) { return r < 1.0f ? 2.0f * r / (1.0f + r) : 1.0f; }
+
+#endif
