@@ -4,15 +4,16 @@
 #ifndef LAMPYRIS_KERNEL_BSDF
 #define LAMPYRIS_KERNEL_BSDF
 
-// clang-format off: the order matters
-#include "core/kernel/bsdf_conductor.h"
-#include "core/kernel/bsdf_dielectric.h"
-#include "core/kernel/bsdf_diffuse.h"
-#include "core/kernel/bsdf_layered.h"
-#include "core/kernel/bsdf_types.h"
+// GLSL wants this order.
+// clang-format off
+#include "core/kernel/sampling.h"
 #include "core/kernel/fresnel.h"
 #include "core/kernel/microfacet.h"
-#include "core/kernel/sampling.h"
+#include "core/kernel/bsdf_types.h"
+#include "core/kernel/bsdf_diffuse.h"
+#include "core/kernel/bsdf_conductor.h"
+#include "core/kernel/bsdf_dielectric.h"
+#include "core/kernel/bsdf_layered.h"
 // clang-format on
 
 // ---- Making one ------------------------------------------------------------------------------------------------------
