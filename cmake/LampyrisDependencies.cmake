@@ -11,7 +11,6 @@ find_package(fmt REQUIRED)
 find_package(spdlog REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
-target_compile_definitions(lampyris_dependencies INTERFACE GLM_FORCE_XYZW_ONLY GLM_FORCE_SILENT_WARNINGS)
 target_link_libraries(lampyris_dependencies INTERFACE
   Threads::Threads ZLIB::ZLIB TBB::tbb embree OpenImageIO::OpenImageIO OpenColorIO::OpenColorIO glm::glm
   fmt::fmt spdlog::spdlog nlohmann_json::nlohmann_json ${CMAKE_DL_LIBS})

@@ -1,0 +1,38 @@
+# cmake --install, and find_package(Lampyris) for plugins outside this tree.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/Lampyris)
+
+# Which Lampyris a plugin is built for: the build makes the header anew when one of those that plugins see changes.
+file(GLOB_RECURSE plugin_headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/src src/core/*.h)
+list(TRANSFORM plugin_headers PREPEND ${PROJECT_SOURCE_DIR}/src/ OUTPUT_VARIABLE plugin_header_files)
+set(abi_header ${PROJECT_BINARY_DIR}/generated/core/plugin_abi.h)
+add_custom_command(OUTPUT ${abi_header}
+  COMMAND ${CMAKE_COMMAND} -DOUTPUT=${abi_header} -DSOURCE_DIR=${PROJECT_SOURCE_DIR}/src "-DHEADERS=${plugin_headers}"
+    -DVERSION=${PROJECT_VERSION} "-DCOMPILER=${CMAKE_CXX_COMPILER_ID} ${LAMPYRIS_SANITIZE}"
+    -P ${PROJECT_SOURCE_DIR}/cmake/LampyrisAbi.cmake
+  DEPENDS ${plugin_header_files} ${PROJECT_SOURCE_DIR}/cmake/LampyrisAbi.cmake
+  COMMENT "Hashing the headers that plugins see" VERBATIM)
+target_sources(lampyris PRIVATE ${abi_header})
+
+set_target_properties(lampyris PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+install(TARGETS lampyris lampyris_abi EXPORT LampyrisTargets)
+if(TARGET lampyris_program)
+  file(RELATIVE_PATH to_library ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
+  set_target_properties(lampyris_program PROPERTIES INSTALL_RPATH $ORIGIN/${to_library})
+  install(TARGETS lampyris_program)
+endif()
+install(EXPORT LampyrisTargets NAMESPACE Lampyris:: DESTINATION ${package_dir})
+install(DIRECTORY src/core DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lampyris FILES_MATCHING PATTERN *.h PATTERN *.glsl)
+install(FILES ${abi_header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lampyris/core)
+configure_package_config_file(cmake/LampyrisConfig.cmake.in ${PROJECT_BINARY_DIR}/LampyrisConfig.cmake
+  INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/LampyrisConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/LampyrisConfig.cmake ${PROJECT_BINARY_DIR}/LampyrisConfigVersion.cmake
+  cmake/LampyrisKernels.cmake cmake/LampyrisPlugin.cmake cmake/cpu_kernel.cpp.in
+  cmake/plugin_abi.cpp
+  DESTINATION ${package_dir})
+install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+add_library(Lampyris::lampyris ALIAS lampyris)
+include(LampyrisPlugin)

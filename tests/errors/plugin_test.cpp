@@ -1,0 +1,92 @@
+// Files that are no plugins are refused with a sentence, and before any of their code runs.
+#include "core/plugin.h"
+
+#include "core/error.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace lampyris {
+namespace {
+
+namespace fs = std::filesystem;
+
+class PluginErrors : public testing::Test {
+ protected:
+    PluginErrors() { fs::create_directories(folder_); }
+    ~PluginErrors() override { fs::remove_all(folder_); }
+
+    std::string write(const std::string& name, const std::string& bytes) const {
+        std::ofstream(folder_ / name, std::ios::binary) << bytes;
+        return (folder_ / name).string();
+    }
+    static std::string message(const std::string& file) {
+        try {
+            load_plugin(file);
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "no error";
+    }
+    fs::path folder_ = fs::temp_directory_path() / fmt::format("lampyris-plugin-test-{}", getpid());
+};
+
+TEST_F(PluginErrors, AMissingFileIsNamed) {
+    EXPECT_EQ(message("nowhere/x.so"), "nowhere/x.so: error: there is no such plugin file");
+}
+
+TEST_F(PluginErrors, AFolderIsNoPlugin) {
+    EXPECT_EQ(message(folder_.string()), folder_.string() + ": error: this is a folder; a plugin is a shared object (.so)");
+}
+
+TEST_F(PluginErrors, ATextIsNoSharedObject) {
+    const std::string file = write("text.so", "lampyris_plugin_abi=0.1.0");
+    EXPECT_EQ(message(file), file + ": error: this is no shared object");
+}
+
+TEST_F(PluginErrors, AnotherProgramsFileLacksTheSymbol) {
+    EXPECT_NE(message("/proc/self/exe").find("no Lampyris plugin: it has no symbol lampyris_plugin_abi"), std::string::npos);
+    const std::string library = LAMPYRIS_BINARY_DIR "/liblampyris.so";
+    EXPECT_NE(message(library).find("no Lampyris plugin"), std::string::npos);
+}
+
+TEST_F(PluginErrors, APluginForAnotherVersionIsNotLoaded) {
+    const std::string file = write("old.so", std::string("\177ELF junk lampyris_plugin") + "_abi=0.0.9 (abc)" + '\0' + "more");
+    EXPECT_EQ(message(file), fmt::format("{}: error: this plugin was built for Lampyris 0.0.9 (abc), and this is Lampyris {}; "
+                                         "build it again",
+                                         file, plugin_abi()));
+}
+
+TEST_F(PluginErrors, ADamagedPluginIsTheLoadersError) {
+    const std::string file =
+        write("damaged.so", std::string("\177ELF junk lampyris_plugin") + "_abi=" + std::string(plugin_abi()) + '\0');
+    EXPECT_TRUE(message(file).starts_with(file + ": error: "));
+    EXPECT_NE(message(file), "no error");
+}
+
+TEST_F(PluginErrors, AFileCutShortInsideItsMarkIsRefused) {
+    const std::string file = write("cut.so", std::string("\177ELF junk lampyris_plugin") + "_abi=0.");
+    EXPECT_NE(message(file).find("was built for Lampyris 0.,"), std::string::npos);
+}
+
+TEST_F(PluginErrors, APathListTakesFoldersFilesAndEmptyEntries) {
+    write("readme.txt", "not looked at");
+    EXPECT_NO_THROW(load_plugin_path(""));
+    EXPECT_NO_THROW(load_plugin_path(":" + folder_.string() + "::"));
+    const std::string bad = write("bad.so", "text");
+    try {
+        load_plugin_path("/usr/lib/nothing-here.so:" + folder_.string());
+        FAIL() << "a missing entry must be told";
+    } catch (const InputError& error) {
+        EXPECT_EQ(std::string(error.what()), "/usr/lib/nothing-here.so: error: there is no such plugin file");
+    }
+    EXPECT_THROW(load_plugin_path(folder_.string()), InputError);
+}
+
+}  // namespace
+}  // namespace lampyris
