@@ -14,5 +14,6 @@
 #include "core/kernel/sampling.h"
 #include "core/kernel/texture.h"
 #include "core/kernel/bsdf.h"
+#include "core/kernel/material.h"
 
 #endif

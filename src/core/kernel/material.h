@@ -1,0 +1,172 @@
+// From a surface point to its Bsdf: which material of a mix, textures, bump or normal map, parameters as the models want them.
+#ifndef LAMPYRIS_KERNEL_MATERIAL
+#define LAMPYRIS_KERNEL_MATERIAL
+
+// Step of a bump map's finite differences, in units of u and v (pbrt's, where it knows no footprint).
+CONST float BUMP_STEP = 5e-4f;
+// The deepest nesting of mix materials; the host refuses more.
+CONST uint MIX_DEPTH = 64u;
+
+FN TextureContext surface_texture_context(IN(Surface) s) {
+    TextureContext c;
+    c.position = s.position;
+    c.normal = s.ng;
+    c.uv = s.uv;
+    return c;
+}
+
+// Opacity of a geometry at a point: a hit counts with this probability.
+FN float surface_alpha(uint geometry, IN(TextureContext) c) {
+    uint program = geometries[geometry].ids.z;
+    if (program == NONE) return geometries[geometry].alpha.x;
+    return texture_float(program, c);
+}
+
+// In [0, 1): a hash of where a surface is seen from where, so that the choice needs no random number and is the same for all
+// who ask (pbrt, 4th edition, section 10.5.1); of the mix, too, so that nested mixes choose independently.
+FN float mix_choice(vec3 position, vec3 wo, uint material) {
+    uint h = hash32(material);
+    h = hash_combine(h, floatBitsToUint(position.x));
+    h = hash_combine(h, floatBitsToUint(position.y));
+    h = hash_combine(h, floatBitsToUint(position.z));
+    h = hash_combine(h, floatBitsToUint(wo.x));
+    h = hash_combine(h, floatBitsToUint(wo.y));
+    h = hash_combine(h, floatBitsToUint(wo.z));
+    return unit_float(h);
+}
+
+// Replaces a mix in s.material by the material that it shows here. wo: world space.
+FN void material_resolve(INOUT(Surface) s, vec3 wo) {
+    for (uint i = 0u; i < MIX_DEPTH; ++i) {
+        if (materials[s.material].data.x != MATERIAL_MIX) return;
+        uvec4 extra = materials[s.material].extra;
+        float amount = extra.z == NONE ? materials[s.material].floats.x : texture_float(extra.z, surface_texture_context(s));
+        s.material = mix_choice(s.position, wo, s.material) < amount ? extra.y : extra.x;
+    }
+    REPORT_UNFINISHED();
+}
+
+// The texture of a slot, in the order of the record: color0..2, roughness u and v, thickness, the coat's roughness u and v.
+CONST uint MATERIAL_SLOTS = 8u;
+FN uint material_slot(IN(MaterialRecord) m, uint slot) {
+    if (slot == 0u) return m.textures.x;
+    if (slot == 1u) return m.textures.y;
+    if (slot == 2u) return m.textures.z;
+    if (slot == 3u) return m.textures.w;
+    if (slot == 4u) return m.textures2.x;
+    if (slot == 5u) return m.textures2.y;
+    if (slot == 6u) return m.textures2.z;
+    return m.textures2.w;
+}
+
+// The shading normal and tangent of a surface displaced along its normal: `displaced` holds the displacement after a step in u,
+// after a step in v, and here (Blinn 1978; pbrt, 4th edition, equations 10.11 and 10.12).
+FN void apply_bump(INOUT(Surface) s, vec3 displaced) {
+    // Tangents of the smooth surface that the shading normals pretend: the true ones, laid into its plane.
+    vec3 dpdu = s.dpdu - s.ns * dot3(s.ns, s.dpdu);
+    vec3 dpdv = s.dpdv - s.ns * dot3(s.ns, s.dpdv);
+    dpdu = dpdu + ((displaced.x - displaced.z) / BUMP_STEP) * s.ns + displaced.z * s.dndu;
+    dpdv = dpdv + ((displaced.y - displaced.z) / BUMP_STEP) * s.ns + displaced.z * s.dndv;
+    vec3 normal = cross3(dpdu, dpdv);
+    float l2 = length_squared(normal);
+    if (!(l2 > 1e-30f && l2 < 1e30f)) return;
+    s.ns = face_forward(normal / sqrt(l2), s.ng);
+    s.dpdu = dpdu;
+}
+
+// The shading normal from a map of normals in the tangent frame, which holds (n + 1) / 2 (pbrt, 4th edition, section 10.5.3).
+FN void apply_normal_map(INOUT(Surface) s, uint image) {
+    vec4 found = image_lookup(image, vec2(s.uv.x, 1.0f - s.uv.y));
+    vec3 n = vec3(2.0f * found.x - 1.0f, 2.0f * found.y - 1.0f, 2.0f * found.z - 1.0f);
+    if (!(length_squared(n) > 1e-12f)) return;
+    s.ns = face_forward(unit(to_world(frame_from_xz(s.dpdu, s.ns), n)), s.ng);
+}
+
+// Puts the values of textures into the record's slots, and bends the shading normal where there is a bump map. One loop with one
+// call: a GLSL compiler inlines each evaluation of a program.
+FN void material_textures(INOUT(MaterialRecord) m, INOUT(Surface) s) {
+    bool bumped = HAS(EFFECT_BUMP) && m.data.z != NONE;
+    uint all = m.textures.x & m.textures.y & m.textures.z & m.textures.w & m.textures2.x & m.textures2.y & m.textures2.z & m.textures2.w;
+    bool textured = HAS(EFFECT_TEXTURES) && all != NONE;
+    if (!bumped && !textured) return;
+    TextureContext here = surface_texture_context(s);
+    vec3 displaced = vec3(0.0f);
+    uint end = textured ? 3u + MATERIAL_SLOTS : 3u;
+    for (uint job = bumped ? 0u : 3u; job < end; ++job) {
+        uint program = job < 3u ? m.data.z : material_slot(m, job - 3u);
+        if (program == NONE) continue;
+        TextureContext c = here;
+        if (job == 0u) {
+            c.position = here.position + BUMP_STEP * s.dpdu;
+            c.uv = vec2(here.uv.x + BUMP_STEP, here.uv.y);
+        } else if (job == 1u) {
+            c.position = here.position + BUMP_STEP * s.dpdv;
+            c.uv = vec2(here.uv.x, here.uv.y + BUMP_STEP);
+        }
+        vec3 value = texture_color(program, c);
+        if (job == 0u) displaced.x = value.x;
+        else if (job == 1u) displaced.y = value.x;
+        else if (job == 2u) displaced.z = value.x;
+        else if (job == 3u) m.color0 = vec4(value.x, value.y, value.z, m.color0.w);
+        else if (job == 4u) m.color1 = vec4(value.x, value.y, value.z, m.color1.w);
+        else if (job == 5u) m.color2 = vec4(value.x, value.y, value.z, m.color2.w);
+        else if (job == 6u) m.floats.x = value.x;
+        else if (job == 7u) m.floats.y = value.x;
+        else if (job == 8u) m.floats2.x = value.x;
+        else if (job == 9u) m.floats2.y = value.x;
+        else m.floats2.z = value.x;
+    }
+    if (bumped) apply_bump(s, displaced);
+}
+
+FN vec2 roughness_alpha(float u, float v, bool remap) {
+    return remap ? vec2(safe_sqrt(u), safe_sqrt(v)) : vec2(u, v);
+}
+
+// The Bsdf at s, and the frame in which it is meant: z is the shading normal. wo, the direction that light leaves in, and the
+// frame's axes are in world space. s.ns and s.dpdu are those of the bump or normal map afterwards, s.material is never a mix.
+FN Bsdf material_bsdf(INOUT(Surface) s, vec3 wo, OUT(Frame) frame) {
+    if (HAS(EFFECT_MIX)) material_resolve(s, wo);
+    MaterialRecord m = materials[s.material];
+    if (HAS(EFFECT_BUMP) || HAS(EFFECT_TEXTURES)) material_textures(m, s);
+    if (HAS(EFFECT_BUMP) && m.data.w != NONE) apply_normal_map(s, m.data.w);
+
+    uint kind = m.data.x;
+    uint flags = m.data.y;
+    vec3 color0 = vec3(m.color0.x, m.color0.y, m.color0.z);
+    vec3 color1 = vec3(m.color1.x, m.color1.y, m.color1.z);
+    vec2 alpha = roughness_alpha(m.floats.x, m.floats.y, (flags & MATERIAL_REMAP) != 0u);
+    if ((flags & MATERIAL_USES_REFLECTANCE) != 0u) {
+        color1 = conductor_k_of_reflectance(color0);
+        color0 = vec3(1.0f);
+    }
+    Bsdf b;
+    if (kind == MATERIAL_DIFFUSE) {
+        b = bsdf_diffuse(color0);
+    } else if (HAS(EFFECT_CONDUCTOR) && kind == MATERIAL_CONDUCTOR) {
+        b = bsdf_conductor(color0, color1, alpha, flags & MATERIAL_ENERGY_COMPENSATION);
+    } else if (HAS(EFFECT_DIELECTRIC) && kind == MATERIAL_DIELECTRIC) {
+        b = bsdf_dielectric(m.floats.z, alpha);
+    } else if (HAS(EFFECT_THIN_DIELECTRIC) && kind == MATERIAL_THIN_DIELECTRIC) {
+        b = bsdf_thin_dielectric(m.floats.z);
+    } else if (HAS(EFFECT_DIFFUSE_TRANSMISSION) && kind == MATERIAL_DIFFUSE_TRANSMISSION) {
+        b = bsdf_diffuse_transmission(m.color0.w * color0, m.color0.w * color1);
+    } else if (HAS(EFFECT_COAT) && (kind == MATERIAL_COATED_DIFFUSE || kind == MATERIAL_COATED_CONDUCTOR)) {
+        bool on_metal = kind == MATERIAL_COATED_CONDUCTOR;
+        vec2 coat_alpha = alpha;
+        if (on_metal) coat_alpha = roughness_alpha(m.floats2.y, m.floats2.z, (flags & MATERIAL_REMAP_COAT) != 0u);
+        Bsdf coat = bsdf_coat(m.floats.z, coat_alpha, m.floats2.x, vec3(m.color2.x, m.color2.y, m.color2.z), m.floats.w, m.extra.x,
+                              m.extra.y);
+        if (on_metal) b = bsdf_coated_conductor(coat, color0, color1, alpha, flags & MATERIAL_ENERGY_COMPENSATION);
+        else b = bsdf_coated_diffuse(coat, color0);
+    } else {
+        b = bsdf_interface();
+    }
+    // Only anisotropic roughness asks where the tangent points.
+    bool oriented = HAS(EFFECT_ROUGH) && (b.alpha.x != b.alpha.y || b.alpha_base.x != b.alpha_base.y);
+    if (oriented) frame = frame_from_xz(s.dpdu, s.ns);
+    else frame = frame_from_z(s.ns);
+    return b;
+}
+
+#endif
