@@ -151,13 +151,21 @@ CONST uint LIGHT_GONIOMETRIC = 8u;
 CONST uint LIGHT_TWO_SIDED = 1u;
 
 // Lights are ordered: the infinite ones first (SceneRecord says how many), so that an escaping ray visits only those.
+//
+// `distributions` holds, at offsets that records give: the CDF by which lights are chosen (number of lights + 1 floats, from 0
+// to 1); for each infinite image of w x h texels a CDF of its rows (h + 1 floats), then for each row a CDF of its texels (w + 1);
+// and the tables of a smooth pixel filter (CameraRecord). The probability of an interval is the difference of its two numbers.
+// Images of light are looked up at points of the equal-area octahedral square (infinite, goniometric) or of the picture
+// (projection), (0, 0) being the upper left corner; they are FILTER_POINT, as pbrt's, and infinite ones WRAP_OCTAHEDRAL.
+// Transforms of lights are the directive's own: that a goniometric image's pole is the light's y axis, and that images have
+// their first row on top, is the kernels' business.
 struct LightRecord {
     uvec4 data;      // kind, flags, image or emission texture or NONE, transform (light space) or NONE
-    uvec4 ids;       // area lights: geometry, primitive, instance (0); images: offset of the distribution in `distributions`, width, height
-    vec4 emission;   // rgb: radiance, intensity or irradiance scale; w: the probability of choosing this light
-    vec4 v0;         // triangle: p0, w: area. point, spot, ...: position. distant: direction towards the light, w: unused
-    vec4 v1;         // triangle: p1. spot: axis, w: cosine at which the falloff begins
-    vec4 v2;         // triangle: p2. spot: w: cosine at which it ends. projection: screen bounds min, max
+    uvec4 ids;       // area lights: geometry, primitive, instance (0); infinite images: offset of the distribution, width, height
+    vec4 emission;   // rgb: radiance, intensity or irradiance, or the scale of the texture or image; w: the probability of choosing this light
+    vec4 v0;         // triangle: p0, w: area. point, spot, ...: position. distant: unit direction towards the light, w: unused
+    vec4 v1;         // triangle: p1 (order of the indices). spot: unit axis (away from the light), w: cosine at which the falloff begins
+    vec4 v2;         // triangle: p2. spot: w: cosine at which it ends. projection: the picture's xmin, ymin, xmax, ymax at z = 1 in light space
 };
 
 // ---- Camera, film, scene ---------------------------------------------------------------------------------------------
@@ -168,8 +176,11 @@ CONST uint PIXEL_FILTER_BOX = 0u;
 CONST uint PIXEL_FILTER_TRIANGLE = 1u;
 CONST uint PIXEL_FILTER_GAUSSIAN = 2u;  // and the other smooth ones: sampled from a table in `distributions`
 
+// A smooth filter has one table of n intervals from the centre to the radius for x and then one for y: the filter's value at
+// the n + 1 nodes (no interval changes its sign), the n + 1 numbers of the CDF of its absolute value, linear between nodes, and
+// the integral of the absolute value over the filter's.
 struct CameraRecord {
-    uvec4 data;   // kind, filter kind, offset of the filter's table in `distributions`, number of its entries per side
+    uvec4 data;   // kind, filter kind, offset of the filter's tables in `distributions`, their number of intervals n
     uvec4 film;   // full resolution x, y, and the crop window's origin x, y
     vec4 to0;     // rows of world-from-camera (camera space: +x right, +y up, +z forward, as pbrt's)
     vec4 to1;

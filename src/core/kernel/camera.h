@@ -1,0 +1,66 @@
+// Cameras and pixel filters.
+#ifndef LAMPYRIS_KERNEL_CAMERA
+#define LAMPYRIS_KERNEL_CAMERA
+
+// The primary ray through `raster` (pixels of the full image, the upper left corner is (0, 0)); u_lens chooses the point on
+// the lens. Perspective rays start at the lens, orthographic ones on the plane z = 0 of camera space.
+FN Ray camera_ray(vec2 raster, vec2 u_lens) {
+    CameraRecord camera = scene[0].camera;
+    vec3 origin = vec3(0.0f);
+    vec3 direction = vec3(0.0f, 0.0f, 1.0f);
+    vec3 on_screen = vec3(camera.screen.x + raster.x * camera.screen.z, camera.screen.y + raster.y * camera.screen.w, 1.0f);
+    if (camera.data.x == CAMERA_ORTHOGRAPHIC) {
+        origin = vec3(on_screen.x, on_screen.y, 0.0f);
+    } else {
+        direction = on_screen;
+    }
+    if (HAS(EFFECT_DEPTH_OF_FIELD) && camera.lens.x > 0.0f) {
+        // All rays of one film point meet on the plane of focus (direction.z is 1).
+        vec3 focus = origin + direction * camera.lens.y;
+        vec2 lens = sample_concentric_disk(u_lens);
+        origin = origin + vec3(camera.lens.x * lens.x, camera.lens.x * lens.y, 0.0f);
+        direction = focus - origin;
+    }
+    Ray ray;
+    ray.origin = transform_point(camera.to0, camera.to1, camera.to2, origin);
+    ray.direction = unit(transform_vector(camera.to0, camera.to1, camera.to2, direction));
+    return ray;
+}
+
+// One coordinate of a smooth filter, from its table (layout.h, CameraRecord.data). `sign` is multiplied by the filter's.
+//
+// The filter is taken as linear between the table's nodes; its absolute value is sampled exactly (inside a cell by the
+// inverse of a quadratic CDF), for u below 1/2 on the negative side, so that stratified u stay stratified.
+FN float sample_filter_table(uint table, uint count, float radius, float u, INOUT(float) sign) {
+    float centred = 2.0f * u - 1.0f;
+    float share = min(abs(centred), ONE_MINUS_EPSILON);
+    uint cdf = table + count + 1u;
+    uint cell = find_interval(cdf, count, share);
+    float a = distributions[table + cell];
+    float b = distributions[table + cell + 1u];
+    float x = sample_linear(place_in_interval(cdf + cell, share), abs(a), abs(b));
+    if (a + b < 0.0f) sign = -sign;
+    float offset = (float(cell) + x) * (radius / float(count));
+    return centred < 0.0f ? -offset : offset;
+}
+
+// Offset from the pixel's centre, in pixels, with density |filter| / integral of |filter|. The weight's expected value is 1;
+// it is negative in the filter's negative lobes, and 1 everywhere for filters without (Ernst et al. 2006, "Filter Importance
+// Sampling").
+FN vec2 pixel_filter_sample(vec2 u, OUT(float) weight) {
+    CameraRecord camera = scene[0].camera;
+    weight = 1.0f;
+    if (camera.data.y == PIXEL_FILTER_BOX) {
+        return vec2((2.0f * u.x - 1.0f) * camera.filtering.x, (2.0f * u.y - 1.0f) * camera.filtering.y);
+    }
+    if (camera.data.y == PIXEL_FILTER_TRIANGLE) return vec2(sample_tent(u.x, camera.filtering.x), sample_tent(u.y, camera.filtering.y));
+    uint count = camera.data.w;
+    uint table_x = camera.data.z;
+    uint table_y = table_x + 2u * count + 3u;
+    float x = sample_filter_table(table_x, count, camera.filtering.x, u.x, weight);
+    float y = sample_filter_table(table_y, count, camera.filtering.y, u.y, weight);
+    weight = weight * (distributions[table_x + 2u * count + 2u] * distributions[table_y + 2u * count + 2u]);
+    return vec2(x, y);
+}
+
+#endif

@@ -1,0 +1,156 @@
+// Lights: choosing one, sampling it from a reference point, and what a path that finds one by chance needs to know.
+//
+// Densities are per solid angle at the reference point (1/sr) and include the probability of choosing the light.
+#ifndef LAMPYRIS_KERNEL_LIGHT
+#define LAMPYRIS_KERNEL_LIGHT
+
+#include "core/kernel/shape_sampling.h"
+#include "core/kernel/environment.h"
+
+struct LightSample {
+    vec3 wi;         // unit direction towards the light
+    vec3 radiance;   // arriving from there, if nothing is in between; delta lights: radiance / pdf is what counts
+    float pdf;       // solid angle, times the probability of choosing the light; delta lights: the latter alone
+    float distance;  // INFINITE_DISTANCE: the shadow ray leaves the scene
+    uint is_delta;   // 1: no ray finds this light by chance
+    uint light;
+};
+
+// ---- Area lights -----------------------------------------------------------------------------------------------------
+
+// Radiance that leaves an area light at a point towards w.
+FN vec3 area_emission(uint light, vec3 position, vec3 ng, vec2 uv, vec3 w) {
+    uvec4 data = lights[light].data;
+    if ((data.y & LIGHT_TWO_SIDED) == 0u && !(dot3(ng, w) > 0.0f)) return vec3(0.0f);
+    vec3 radiance = vec3(lights[light].emission);
+    if (HAS(EFFECT_LIGHT_TEXTURES) && data.z != NONE) {
+        TextureContext context;
+        context.position = position;
+        context.normal = ng;
+        context.uv = uv;
+        radiance = radiance * max(texture_color(data.z, context), vec3(0.0f));
+    }
+    return radiance;
+}
+
+// The area light at s as seen from direction w (from s to the viewer, unit length); black where there is none.
+FN vec3 light_emission(IN(Surface) s, vec3 w) {
+    if (!HAS(EFFECT_AREA_LIGHTS) || s.light == NONE) return vec3(0.0f);
+    return area_emission(s.light, s.position, s.ng, s.uv, w);
+}
+
+// The density with which light_sample(ref_p, ...) would have found s, which a ray from ref_p in direction wi met.
+FN float light_pdf(IN(Surface) s, vec3 ref_p, vec3 wi) {
+    if (!HAS(EFFECT_AREA_LIGHTS) || s.light == NONE) return 0.0f;
+    LightRecord light = lights[s.light];
+    float pdf = 0.0f;
+    if (!HAS(EFFECT_QUADRIC_LIGHTS) || light.data.x == LIGHT_TRIANGLE) {
+        pdf = pdf_triangle_light(light, ref_p, s.position, s.ng, wi);
+    } else if (HAS(EFFECT_BILINEAR) && geometries[light.ids.x].data.x == GEOMETRY_BILINEAR) {
+        pdf = pdf_bilinear_light(light.ids.x, light.ids.y, ref_p, s.position, s.ng, wi);
+    } else if (HAS(EFFECT_QUADRICS)) {
+        pdf = pdf_quadric_light(light.ids.x, ref_p, s.position, s.ng, wi);
+    }
+    return pdf * light.emission.w;
+}
+
+FN bool sample_area_light(uint index, vec3 ref_p, vec2 u, INOUT(LightSample) s) {
+    LightRecord light = lights[index];
+    ShapeSample shape;
+    bool found = false;
+    if (!HAS(EFFECT_QUADRIC_LIGHTS) || light.data.x == LIGHT_TRIANGLE) {
+        found = sample_triangle_light(light, ref_p, u, shape);
+    } else if (HAS(EFFECT_BILINEAR) && geometries[light.ids.x].data.x == GEOMETRY_BILINEAR) {
+        found = sample_bilinear_light(light.ids.x, light.ids.y, ref_p, u, shape);
+    } else if (HAS(EFFECT_QUADRICS)) {
+        found = sample_quadric_light(light.ids.x, ref_p, u, shape);
+    }
+    if (!found) return false;
+    s.wi = shape.wi;
+    s.distance = shape.distance;
+    s.pdf = shape.pdf * light.emission.w;
+    s.radiance = area_emission(index, shape.position, shape.ng, shape.uv, -shape.wi);
+    if (HAS(EFFECT_ALPHA)) {
+        // Rays find a masked point with the probability that is its alpha: that is its share here.
+        TextureContext context;
+        context.position = shape.position;
+        context.normal = shape.ng;
+        context.uv = shape.uv;
+        s.radiance = s.radiance * clamp(surface_alpha(light.ids.x, context), 0.0f, 1.0f);
+    }
+    return !is_black(s.radiance);
+}
+
+// ---- Lights at a point -----------------------------------------------------------------------------------------------
+
+// Smooth step from 0 at `low` to 1 at `high`.
+FN float smooth_step_of(float x, float low, float high) {
+    if (low == high) return x < low ? 0.0f : 1.0f;
+    float t = clamp((x - low) / (high - low), 0.0f, 1.0f);
+    return t * t * (3.0f - 2.0f * t);
+}
+
+// Intensity (W/sr per channel) that the light at a point sends in direction w (world, unit length), as pbrt's lights of the
+// same names do (4th edition, sections 12.2.1 and 12.2.3).
+FN vec3 point_light_intensity(IN(LightRecord) light, vec3 w) {
+    vec3 intensity = vec3(light.emission);
+    if (light.data.x == LIGHT_SPOT) return intensity * smooth_step_of(dot3(vec3(light.v1), w), light.v2.w, light.v1.w);
+    if (HAS(EFFECT_PROJECTION_LIGHTS) && light.data.x >= LIGHT_PROJECTION) {
+        TransformRecord m = transforms[light.data.w];
+        vec3 d = unit(transform_vector(m.from0, m.from1, m.from2, w));
+        vec2 st;
+        if (light.data.x == LIGHT_PROJECTION) {
+            if (!(d.z >= 1e-3f)) return vec3(0.0f);
+            st = vec2((d.x / d.z - light.v2.x) / (light.v2.z - light.v2.x), (light.v2.w - d.y / d.z) / (light.v2.w - light.v2.y));
+            if (!(st.x >= 0.0f && st.x <= 1.0f && st.y >= 0.0f && st.y <= 1.0f)) return vec3(0.0f);
+        } else {
+            st = square_from_direction(vec3(d.x, d.z, d.y));  // the image's pole is the light's y axis
+        }
+        intensity = intensity * vec3(image_lookup(light.data.z, st));
+    }
+    return intensity;
+}
+
+FN bool sample_point_light(uint index, vec3 ref_p, INOUT(LightSample) s) {
+    LightRecord light = lights[index];
+    vec3 to_light = vec3(light.v0) - ref_p;
+    float d2 = length_squared(to_light);
+    if (!(d2 > 0.0f) || !is_finite(d2)) return false;
+    s.distance = sqrt(d2);
+    s.wi = to_light / s.distance;
+    s.radiance = point_light_intensity(light, -s.wi) / d2;
+    s.pdf = light.emission.w;
+    s.is_delta = 1u;
+    return !is_black(s.radiance);
+}
+
+// ---- All lights ------------------------------------------------------------------------------------------------------
+
+// Chooses a light (in proportion to its power) and samples it from ref_p; false where no light arrives.
+FN bool light_sample(vec3 ref_p, float u_choice, vec2 u, OUT(LightSample) s) {
+    s.wi = vec3(0.0f, 0.0f, 1.0f);
+    s.radiance = vec3(0.0f);
+    s.pdf = 0.0f;
+    s.distance = INFINITE_DISTANCE;
+    s.is_delta = 0u;
+    uint count = scene[0].lights.x;
+    s.light = NONE;
+    if (count == 0u) return false;
+    s.light = count == 1u ? 0u : find_interval(scene[0].lights.z, count, u_choice);
+    uint kind = lights[s.light].data.x;
+    if (HAS(EFFECT_AREA_LIGHTS) && kind <= LIGHT_GEOMETRY) return sample_area_light(s.light, ref_p, u, s);
+    if (HAS(EFFECT_ENVIRONMENT) && (kind == LIGHT_INFINITE || kind == LIGHT_INFINITE_IMAGE)) {
+        return environment_sample(s.light, u, s.wi, s.radiance, s.pdf) && !is_black(s.radiance);
+    }
+    if (HAS(EFFECT_DISTANT_LIGHTS) && kind == LIGHT_DISTANT) {
+        s.wi = vec3(lights[s.light].v0);
+        s.radiance = vec3(lights[s.light].emission);
+        s.pdf = lights[s.light].emission.w;
+        s.is_delta = 1u;
+        return true;
+    }
+    if (HAS(EFFECT_POINT_LIGHTS) || HAS(EFFECT_PROJECTION_LIGHTS)) return sample_point_light(s.light, ref_p, s);
+    return false;
+}
+
+#endif

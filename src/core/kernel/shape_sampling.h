@@ -1,0 +1,289 @@
+// Points on shapes as seen from a reference point, with their density in solid angle (1/sr) at that point.
+//
+// A shape is sampled uniformly in the solid angle that it subtends where that is known in closed form (whole spheres from
+// outside, large triangles), and uniformly in its area otherwise. Everything is exact under any affine transform: densities
+// carry the transform's Jacobian.
+#ifndef LAMPYRIS_KERNEL_SHAPE_SAMPLING
+#define LAMPYRIS_KERNEL_SHAPE_SAMPLING
+
+struct ShapeSample {
+    vec3 wi;         // unit direction from the reference point
+    float distance;
+    float pdf;       // 1/sr
+    vec3 position;
+    vec3 ng;         // unit geometric normal, oriented as Surface's
+    vec2 uv;
+};
+
+// Density in solid angle, at a distance whose square is given, of a density in area.
+FN float pdf_of_area(float pdf_area, float distance_squared, float cosine) {
+    return pdf_area * distance_squared / max(abs(cosine), 1e-20f);
+}
+
+// wi and distance from a position and a density in area; false where the reference point is on the shape or sees its edge.
+FN bool shape_sample_from_area(vec3 ref_p, float pdf_area, INOUT(ShapeSample) s) {
+    vec3 to_light = s.position - ref_p;
+    float d2 = length_squared(to_light);
+    if (!(d2 > 0.0f) || !is_finite(d2)) return false;
+    s.distance = sqrt(d2);
+    s.wi = to_light / s.distance;
+    float cosine = dot3(s.ng, s.wi);
+    if (cosine == 0.0f) return false;
+    s.pdf = pdf_of_area(pdf_area, d2, cosine);
+    return s.pdf > 0.0f && is_finite(s.pdf);
+}
+
+// ---- Triangles -------------------------------------------------------------------------------------------------------
+
+// Below this solid angle (sr) a triangle is sampled by area: distance and cosine hardly vary over it, and it is cheaper.
+CONST float SPHERICAL_TRIANGLE_MIN = 0.1f;
+CONST float SPHERICAL_TRIANGLE_MAX = 6.0f;  // near 2 pi the reference point is next to the triangle's plane
+
+// Solid angle of the triangle of unit vectors a, b, c (van Oosterom and Strackee 1983, equation 8).
+FN float spherical_triangle_area(vec3 a, vec3 b, vec3 c) {
+    return 2.0f * atan2_of(abs(dot3(a, cross3(b, c))), 1.0f + dot3(a, b) + dot3(b, c) + dot3(a, c));
+}
+
+// Solid angle in which to sample the triangle from p, or 0 where it is to be sampled by area.
+FN float triangle_sampled_solid_angle(IN(LightRecord) light, vec3 ref_p, OUT(vec3) a, OUT(vec3) b, OUT(vec3) c) {
+    a = vec3(light.v0) - ref_p;
+    b = vec3(light.v1) - ref_p;
+    c = vec3(light.v2) - ref_p;
+    float a2 = length_squared(a);
+    float b2 = length_squared(b);
+    float c2 = length_squared(c);
+    // At most this far away the solid angle can be large enough.
+    if (!(light.v0.w > SPHERICAL_TRIANGLE_MIN * min(a2, min(b2, c2)) * 0.25f) || !(min(a2, min(b2, c2)) > 0.0f)) return 0.0f;
+    a = a / sqrt(a2);
+    b = b / sqrt(b2);
+    c = c / sqrt(c2);
+    float solid_angle = spherical_triangle_area(a, b, c);
+    return solid_angle >= SPHERICAL_TRIANGLE_MIN && solid_angle <= SPHERICAL_TRIANGLE_MAX ? solid_angle : 0.0f;
+}
+
+// Direction uniform in the spherical triangle (Arvo 1995, "Stratified Sampling of Spherical Triangles"): u.x chooses the
+// share of the area cut off by an arc from b to a point c' on the arc ac, u.y a point on the arc b c'.
+//
+// c' is found by half angles: with c' at angle theta from a, t the unit tangent there and V = |a . (b x t)|, van Oosterom's
+// formula for the triangle a, b, c' of area A reads tan(A/2) = h V / ((1 + a.b) + h b.t), h = tan(theta/2), which is linear
+// in h. Unlike Arvo's expressions it does not cancel for small triangles.
+FN vec3 sample_spherical_triangle(vec3 a, vec3 b, vec3 c, float solid_angle, vec2 u) {
+    float s;
+    float k;
+    sin_cos(0.5f * u.x * solid_angle, s, k);
+    vec3 tangent = (c - a) - a * dot3(a, c - a);
+    tangent = tangent / length_of(tangent);
+    float volume = abs(dot3(a, cross3(b, tangent)));
+    float h_up = s * (1.0f + dot3(a, b));
+    float h_down = volume * k - s * dot3(b, tangent);
+    float inverse = 1.0f / (h_up * h_up + h_down * h_down);
+    // cos and sin of theta, theta = 2 atan(h).
+    vec3 c_new = a * ((h_down * h_down - h_up * h_up) * inverse) + tangent * (2.0f * h_up * h_down * inverse);
+    vec3 chord = c_new - b;
+    float one_minus_cos = 0.5f * u.y * length_squared(chord);
+    vec3 side = chord - b * dot3(b, chord);
+    float side_length = length_of(side);
+    if (!(side_length > 0.0f)) return b;
+    return unit(b * (1.0f - one_minus_cos) + side * (safe_sqrt(one_minus_cos * (2.0f - one_minus_cos)) / side_length));
+}
+
+// Unit normal of a triangle light, turned as the geometry's flags and vertex normals say.
+FN vec3 triangle_light_normal(IN(LightRecord) light, IN(GeometryRecord) g, uvec3 corner, vec3 barycentric) {
+    vec3 ng = unit(cross3(vec3(light.v1) - vec3(light.v0), vec3(light.v2) - vec3(light.v0)));
+    if (HAS(EFFECT_SMOOTH_NORMALS) && (g.data.y & GEOMETRY_HAS_NORMALS) != 0u) {
+        vec3 ns = barycentric.x * vertex_normal(g.attributes.x + corner.x) + barycentric.y * vertex_normal(g.attributes.x + corner.y) +
+                  barycentric.z * vertex_normal(g.attributes.x + corner.z);
+        return face_forward(ng, ns);
+    }
+    return (g.data.y & GEOMETRY_FLIP) != 0u ? -ng : ng;
+}
+
+FN bool sample_triangle_light(IN(LightRecord) light, vec3 ref_p, vec2 u, OUT(ShapeSample) s) {
+    GeometryRecord g = geometries[light.ids.x];
+    uint first = g.data.z + 3u * light.ids.y;
+    uvec3 corner = uvec3(indices[first], indices[first + 1u], indices[first + 2u]);
+    vec3 p0 = vec3(light.v0);
+    vec3 e1 = vec3(light.v1) - p0;
+    vec3 e2 = vec3(light.v2) - p0;
+    s.uv = vec2(0.0f);
+    vec3 a;
+    vec3 b;
+    vec3 c;
+    float solid_angle = triangle_sampled_solid_angle(light, ref_p, a, b, c);
+    vec3 barycentric;
+    if (solid_angle > 0.0f) {
+        s.wi = sample_spherical_triangle(a, b, c, solid_angle, u);
+        // Where that direction meets the triangle's plane (Moeller and Trumbore 1997), kept inside of the triangle.
+        vec3 pv = cross3(s.wi, e2);
+        float determinant = dot3(e1, pv);
+        if (determinant == 0.0f) return false;
+        vec3 tv = ref_p - p0;
+        vec3 qv = cross3(tv, e1);
+        float b1 = clamp(dot3(tv, pv) / determinant, 0.0f, 1.0f);
+        float b2 = clamp(dot3(s.wi, qv) / determinant, 0.0f, 1.0f - b1);
+        barycentric = vec3(1.0f - b1 - b2, b1, b2);
+        s.position = p0 + b1 * e1 + b2 * e2;
+        s.distance = distance_of(s.position, ref_p);
+        s.pdf = 1.0f / solid_angle;
+        s.ng = triangle_light_normal(light, g, corner, barycentric);
+    } else {
+        barycentric = sample_uniform_triangle(u);
+        s.position = p0 + barycentric.y * e1 + barycentric.z * e2;
+        s.ng = triangle_light_normal(light, g, corner, barycentric);
+        if (!shape_sample_from_area(ref_p, 1.0f / light.v0.w, s)) return false;
+    }
+    s.uv = vec2(barycentric.y + barycentric.z, barycentric.z);  // pbrt's: (0,0), (1,0), (1,1)
+    if ((HAS(EFFECT_LIGHT_TEXTURES) || HAS(EFFECT_ALPHA)) && (g.data.y & GEOMETRY_HAS_UVS) != 0u) {
+        s.uv = barycentric.x * vertex_uv(g.attributes.y + corner.x) + barycentric.y * vertex_uv(g.attributes.y + corner.y) +
+               barycentric.z * vertex_uv(g.attributes.y + corner.z);
+    }
+    return true;
+}
+
+FN float pdf_triangle_light(IN(LightRecord) light, vec3 ref_p, vec3 position, vec3 ng, vec3 wi) {
+    vec3 a;
+    vec3 b;
+    vec3 c;
+    float solid_angle = triangle_sampled_solid_angle(light, ref_p, a, b, c);
+    if (solid_angle > 0.0f) return 1.0f / solid_angle;
+    return pdf_of_area(1.0f / light.v0.w, length_squared(position - ref_p), dot3(ng, wi));
+}
+
+// ---- Quadrics --------------------------------------------------------------------------------------------------------
+
+FN float determinant_of(vec4 r0, vec4 r1, vec4 r2) { return dot3(vec3(r0), cross3(vec3(r1), vec3(r2))); }
+
+// Area in the quadric's own space.
+FN float quadric_area(uint kind, vec4 params) {
+    if (kind == GEOMETRY_DISK) return 0.5f * params.w * (params.y - params.z) * (params.y + params.z);
+    return params.w * params.x * (params.z - params.y);
+}
+
+FN bool sphere_is_whole(vec4 params) { return params.y <= -params.x && params.z >= params.x && params.w >= TWO_PI; }
+
+// Density in area (set's space) of sampling the quadric uniformly in its own space, where its set normal (quadric_set_normal)
+// has the length given.
+FN float quadric_pdf_area(IN(GeometryRecord) g, IN(TransformRecord) m, float normal_length) {
+    return abs(determinant_of(m.from0, m.from1, m.from2)) / (quadric_area(g.data.x, g.params) * normal_length);
+}
+
+// Uniform in area, in the quadric's own space.
+FN vec3 sample_quadric_point(uint kind, vec4 params, vec2 u) {
+    if (kind == GEOMETRY_DISK) {
+        if (params.z == 0.0f && params.w >= TWO_PI) {
+            vec2 d = sample_concentric_disk(u);
+            return vec3(params.y * d.x, params.y * d.y, params.x);
+        }
+        float r = sqrt(lerp_of(u.x, params.z * params.z, params.y * params.y));
+        return spherical_direction(r, params.x, u.y * params.w);
+    }
+    float z = lerp_of(u.x, params.y, params.z);
+    float r = kind == GEOMETRY_SPHERE ? safe_sqrt((params.x - z) * (params.x + z)) : params.x;
+    return spherical_direction(r, z, u.y * params.w);
+}
+
+// 1 - cos of the half angle of the cone that a whole sphere fills, seen from `ref_p` (quadric's space); 0 from inside.
+FN float sphere_cone(vec4 params, vec3 ref_p) {
+    vec3 f = ref_p / params.x;
+    float d2 = length_squared(f);
+    if (!(d2 > 1.001f)) return 0.0f;
+    float sin2 = 1.0f / d2;
+    return sin2 / (1.0f + sqrt(1.0f - sin2));
+}
+
+FN bool sample_quadric_light(uint geometry, vec3 ref_p, vec2 u, OUT(ShapeSample) s) {
+    GeometryRecord g = geometries[geometry];
+    TransformRecord m = transforms[g.ids.w];
+    uint kind = g.data.x;
+    s.uv = vec2(0.0f);
+    if (kind == GEOMETRY_SPHERE && sphere_is_whole(g.params)) {
+        vec3 o = transform_point(m.from0, m.from1, m.from2, ref_p);
+        float one_minus_cos_max = sphere_cone(g.params, o);
+        if (one_minus_cos_max > 0.0f) {
+            // Uniform in the cone that the sphere fills; distances in units of the radius.
+            vec3 f = o / g.params.x;
+            float d = length_of(f);
+            Frame frame = frame_from_z(f / -d);
+            vec3 local = sample_uniform_cone(u, one_minus_cos_max);
+            float sin2 = local.x * local.x + local.y * local.y;
+            float half_chord = safe_sqrt(1.0f - d * d * sin2);
+            float t = d * local.z - half_chord;
+            // The point, from the sphere's centre: no difference of large numbers, however far the sphere is.
+            vec3 local_point = vec3(t * local.x, t * local.y, -(d * sin2 + half_chord * local.z));
+            vec3 p = to_world(frame, local_point);
+            p = p * (g.params.x / length_of(p));
+            vec3 w = to_world(frame, local);
+            vec3 set_w = transform_vector(m.to0, m.to1, m.to2, w);
+            float stretch = length_of(set_w);
+            vec3 n = quadric_set_normal(geometry, p);
+            s.ng = n / length_of(n);
+            s.wi = set_w / stretch;
+            s.distance = t * g.params.x * stretch;
+            s.position = ref_p + s.wi * s.distance;
+            s.pdf = pdf_uniform_cone(one_minus_cos_max) * abs(determinant_of(m.from0, m.from1, m.from2)) * (stretch * stretch * stretch);
+            if (HAS(EFFECT_LIGHT_TEXTURES) || HAS(EFFECT_ALPHA)) s.uv = quadric_uv(kind, g.params, p);
+            return is_finite(s.pdf);
+        }
+    }
+    vec3 p = sample_quadric_point(kind, g.params, u);
+    vec3 error;
+    s.position = quadric_set_position(geometry, p, error);
+    vec3 n = quadric_set_normal(geometry, p);
+    float n_length = length_of(n);
+    s.ng = n / n_length;
+    if (HAS(EFFECT_LIGHT_TEXTURES) || HAS(EFFECT_ALPHA)) s.uv = quadric_uv(kind, g.params, p);
+    return shape_sample_from_area(ref_p, quadric_pdf_area(g, m, n_length), s);
+}
+
+FN float pdf_quadric_light(uint geometry, vec3 ref_p, vec3 position, vec3 ng, vec3 wi) {
+    GeometryRecord g = geometries[geometry];
+    TransformRecord m = transforms[g.ids.w];
+    uint kind = g.data.x;
+    if (kind == GEOMETRY_SPHERE && sphere_is_whole(g.params)) {
+        float one_minus_cos_max = sphere_cone(g.params, transform_point(m.from0, m.from1, m.from2, ref_p));
+        if (one_minus_cos_max > 0.0f) {
+            float stretch = 1.0f / length_of(transform_vector(m.from0, m.from1, m.from2, wi));
+            return pdf_uniform_cone(one_minus_cos_max) * abs(determinant_of(m.from0, m.from1, m.from2)) * (stretch * stretch * stretch);
+        }
+    }
+    vec3 p = transform_point(m.from0, m.from1, m.from2, position);
+    float pdf_area = quadric_pdf_area(g, m, length_of(quadric_set_normal(geometry, p)));
+    return pdf_of_area(pdf_area, length_squared(position - ref_p), dot3(ng, wi));
+}
+
+// ---- Bilinear patches ------------------------------------------------------------------------------------------------
+
+// How much area a step in u and v covers, at the four corners; over a plane patch it varies bilinearly between them, so that
+// sampling (u, v) in proportion is uniform in area there.
+FN vec4 patch_stretch(IN(Patch) b) {
+    return vec4(length_of(cross3(b.p10 - b.p00, b.p01 - b.p00)), length_of(cross3(b.p10 - b.p00, b.p11 - b.p10)),
+                length_of(cross3(b.p11 - b.p01, b.p01 - b.p00)), length_of(cross3(b.p11 - b.p01, b.p11 - b.p10)));
+}
+
+// Density in area at (u, v).
+FN float patch_pdf_area(IN(Patch) b, vec2 uv) {
+    float stretch = length_of(cross3(patch_dpdu(b, uv.y), patch_dpdv(b, uv.x)));
+    return stretch > 0.0f ? pdf_bilinear(uv, patch_stretch(b)) / stretch : 0.0f;
+}
+
+FN bool sample_bilinear_light(uint geometry, uint primitive, vec3 ref_p, vec2 u, OUT(ShapeSample) s) {
+    Patch b = load_patch(geometry, primitive);
+    vec2 uv = sample_bilinear(u, patch_stretch(b));
+    Surface surface;
+    bilinear_fill(geometry, primitive, uv, surface);
+    s.position = surface.position;
+    s.ng = surface.ng;
+    s.uv = surface.uv;
+    return shape_sample_from_area(ref_p, patch_pdf_area(b, uv), s);
+}
+
+// The surface's uv may be vertex attributes, so the patch's own are found again with the ray.
+FN float pdf_bilinear_light(uint geometry, uint primitive, vec3 ref_p, vec3 position, vec3 ng, vec3 wi) {
+    float t;
+    vec2 uv;
+    if (!bilinear_hit(geometry, primitive, ref_p, wi, INFINITE_DISTANCE, t, uv)) return 0.0f;
+    Patch b = load_patch(geometry, primitive);
+    return pdf_of_area(patch_pdf_area(b, uv), length_squared(position - ref_p), dot3(ng, wi));
+}
+
+#endif
