@@ -57,9 +57,9 @@ TEST(Flip, AgreesWithItsAuthorsImplementation) {
         const Pair pair = make(width, height, test["peak"], test["amount"], test["seed"]);
         const bool hdr = test["range"] == "HDR";
         const FlipResult ours = hdr ? flip_hdr(pair.image, pair.reference) : flip_ldr(pair.image, pair.reference);
-        // Both sides compute in 32-bit floats, in another order: that made differences of up to 1.6e-5 for a pixel (where the
-        // exponents 0.5 and 0.7 magnify the rounding of small differences) and 2e-7 for a mean. The file has five digits of a
-        // pixel. A wrong constant or border rule moves pixels by more than 1e-3.
+        // Both sides compute in 32-bit floats, in another order: that made differences of up to 1.6e-5 for a pixel
+        // (where the exponents 0.5 and 0.7 magnify the rounding of small differences) and 2e-7 for a mean. The file has
+        // five digits of a pixel. A wrong constant or border rule moves pixels by more than 1e-3.
         EXPECT_NEAR(ours.mean, test["mean"].get<double>(), 5e-6);
         for (size_t i = 0; i < ours.error.size(); ++i)
             ASSERT_NEAR(ours.error[i], test["error"][i].get<double>(), 1e-4) << "pixel " << i;

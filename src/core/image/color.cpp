@@ -71,7 +71,8 @@ void apply_view(Image& rgb, const std::string& view, float exposure) {
     for (float& value : rgb.pixels) {
         value *= scale;
         if (std::isnan(value)) value = 0.0f;
-        // The largest finite number stands for infinity: white in every view, where Inf would turn into NaN inside some.
+        // The largest finite number stands for infinity: white in every view, where Inf would turn into NaN inside
+        // some.
         value = std::clamp(value, -65504.0f, 65504.0f);
     }
     try {

@@ -25,8 +25,8 @@ std::vector<std::string> view_names();
 // Throws InputError that lists the views where there is none of this name.
 void check_view(const std::string& view);
 
-// Scene-linear Rec.709 light to display values, 0 = black to 1 = white, in place. `rgb` must have exactly three channels.
-// `exposure` is in stops: light is multiplied by 2^exposure first. NaN becomes black.
+// Scene-linear Rec.709 light to display values, 0 = black to 1 = white, in place. `rgb` must have exactly three
+// channels. `exposure` is in stops: light is multiplied by 2^exposure first. NaN becomes black.
 void apply_view(Image& rgb, const std::string& view, float exposure);
 // The same, rounded to 8 bits: [height][width][3].
 std::vector<uint8_t> display_bytes(const Image& rgb, const std::string& view, float exposure);

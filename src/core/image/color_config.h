@@ -1,5 +1,5 @@
-// The OpenColorIO configuration that ships with Lampyris, as text. Its reference space is what the renderer computes in:
-// scene-linear light with Rec.709 primaries and D65 white.
+// The OpenColorIO configuration that ships with Lampyris, as text. Its reference space is what the renderer computes
+// in: scene-linear light with Rec.709 primaries and D65 white.
 #pragma once
 
 namespace lampyris {
@@ -57,7 +57,7 @@ colorspaces:
   - !<ColorSpace>
     name: Log
     bitdepth: 8ui
-    description: the logarithm of light, from 10 stops below middle grey (0.18) to 6.5 above it; shows what is in the dark
+    description: the logarithm of light, from 10 stops below middle grey (0.18) to 6.5 above it
     from_scene_reference: !<AllocationTransform> {allocation: lg2, vars: [-12.473931, 4.026069]}
 
   - !<ColorSpace>

@@ -23,7 +23,8 @@ struct Size {
     size_t count() const { return size_t(width) * size_t(height); }
 };
 
-// Every row is computed by one thread and depends on its inputs alone: the result does not depend on the number of threads.
+// Every row is computed by one thread and depends on its inputs alone: the result does not depend on the number of
+// threads.
 void for_rows(int height, const std::function<void(int)>& row) {
     tbb::parallel_for(tbb::blocked_range<int>(0, height, 8), [&](const tbb::blocked_range<int>& rows) {
         for (int y = rows.begin(); y < rows.end(); ++y) row(y);
@@ -258,7 +259,8 @@ void check_inputs(const Image& image, const Image& reference) {
                                      image.size_text(), image.channels, reference.size_text(), reference.channels));
 }
 
-// ACES' curve as a quotient of quadratics: (n0 x^2 + n1 x + n2) / (d0 x^2 + d1 x + d2), with Narkowicz's fit and x scaled by 0.6.
+// ACES' curve as a quotient of quadratics: (n0 x^2 + n1 x + n2) / (d0 x^2 + d1 x + d2), with Narkowicz's fit and x
+// scaled by 0.6.
 constexpr double kAcesNumerator[3] = {0.6 * 0.6 * 2.51, 0.6 * 0.03, 0.0},
                  kAcesDenominator[3] = {0.6 * 0.6 * 2.43, 0.6 * 0.59, 0.14};
 
@@ -277,14 +279,16 @@ double overexposed_light() {
     return (-b + std::sqrt(b * b - 4.0 * a * c)) / (2.0 * a);
 }
 
-// From the exposure at which the brightest pixel of the reference is just well exposed to that at which half of them are.
+// From the exposure at which the brightest pixel of the reference is just well exposed to that at which half of them
+// are.
 void choose_exposures(const std::vector<glm::vec3>& reference, FlipResult& result) {
     std::vector<float> luminances;
     for (const glm::vec3& color : reference)
         luminances.push_back(glm::dot(color, glm::vec3(0.2126f, 0.7152f, 0.0722f)));
     const auto middle = luminances.begin() + std::ptrdiff_t(luminances.size() / 2);
     std::nth_element(luminances.begin(), middle, luminances.end());
-    // As in flip-evaluator: the upper of two middle ones, and a floor that keeps a mostly black reference's range finite.
+    // As in flip-evaluator: the upper of two middle ones, and a floor that keeps a mostly black reference's range
+    // finite.
     const auto exposure_for = [](float luminance) {
         return std::log2(overexposed_light() / double(std::max(luminance, std::numeric_limits<float>::epsilon())));
     };

@@ -1,9 +1,9 @@
 // FLIP: how different two images look to a person who flips between them on one screen; 0 (the same) to 1 per pixel.
 //
-// LDR-FLIP: Andersson et al., "FLIP: A Difference Evaluator for Alternating Images", HPG 2020.
-// HDR-FLIP: Andersson et al., "Visualizing Errors in Rendered High Dynamic Range Images", Eurographics Short Papers 2021:
-// the largest LDR-FLIP over a range of exposures that follows from the reference.
-// Written from the papers; agrees with the authors' flip-evaluator (tests/unit/flip_test.cpp).
+// LDR-FLIP: Andersson et al., "FLIP: A Difference Evaluator for Alternating Images", HPG 2020. HDR-FLIP: Andersson et
+// al., "Visualizing Errors in Rendered High Dynamic Range Images", Eurographics Short Papers 2021: the largest LDR-FLIP
+// over a range of exposures that follows from the reference. Written from the papers; agrees with the authors'
+// flip-evaluator (tests/unit/flip_test.cpp).
 #pragma once
 
 #include "core/image/image.h"

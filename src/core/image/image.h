@@ -46,12 +46,14 @@ struct Image {
     float at(int px, int py, int channel) const { return pixels[index(px, py, channel)]; }
 
     int find_channel(std::string_view name) const;  // -1 where there is none
-    // The channels named, in that order. Throws InputError that names a channel that is missing and those that are there.
+    // The channels named, in that order. Throws InputError that names a channel that is missing and those that are
+    // there.
     Image select(const std::vector<std::string>& names) const;
     // R, G, B (by name, whatever their order); one grey channel ("Y", or a single one) becomes three equal ones.
     // Throws InputError where the image has neither.
     Image rgb() const;
-    // The pixels inside `bounds`, in this image's pixel coordinates. Throws InputError unless 0 <= x0 < x1 <= width, ...
+    // The pixels inside `bounds`, in this image's pixel coordinates. Throws InputError unless 0 <= x0 < x1 <= width,
+    // ...
     Image crop(const PixelBounds& bounds) const;
     // Appends channels to every pixel; `values` is [height][width][names.size()].
     void add_channels(const std::vector<std::string>& names, const std::vector<float>& values);

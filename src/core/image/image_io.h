@@ -13,15 +13,16 @@
 namespace lampyris {
 
 struct ReadOptions {
-    // Turn sRGB-encoded colour (integer formats, unless the file says otherwise) into light. Textures ask for false: they
-    // have an encoding of their own, and Image::encoding tells what the file's is.
+    // Turn sRGB-encoded colour (integer formats, unless the file says otherwise) into light. Textures ask for false:
+    // they have an encoding of their own, and Image::encoding tells what the file's is.
     bool linear = true;
     // Only R, G, B (Image::rgb): grey expands, alpha and other channels are dropped.
     bool rgb = false;
 };
 
 // Throws InputError that names the file and says why it cannot be read. Integers become 0 to 1 (but unsigned 32-bit
-// channels of an EXR, which are counts: they keep their value); colour is not multiplied by alpha, where the file did not.
+// channels of an EXR, which are counts: they keep their value); colour is not multiplied by alpha, where the file did
+// not.
 Image read_image(const std::string& path, const ReadOptions& options = {});
 
 struct WriteOptions {
@@ -41,14 +42,14 @@ struct WriteResult {
 
 // The extensions that write_image knows: ".exr", ".pfm", ".png".
 const std::vector<std::string>& writable_extensions();
-// Throws InputError for an unknown extension, a folder that does not exist, or an unknown view; MachineError where there is no
-// permission. For before the work is done.
+// Throws InputError for an unknown extension, a folder that does not exist, or an unknown view; MachineError where
+// there is no permission. For before the work is done.
 void check_image_output(const std::string& path, const WriteOptions& options = {});
 
-// Writes what the extension says. EXR: every channel, metadata as string attributes, tiled; PFM: R, G, B (or the only channel);
-// PNG: R, G, B as the view shows them, 8 bits.
-// The file appears complete or not at all. Where it cannot be written (disk full, no permission), MachineError says why; the
-// image is then saved in the folder for temporary files, if that is possible, and the message says where.
+// Writes what the extension says. EXR: every channel, metadata as string attributes, tiled; PFM: R, G, B (or the only
+// channel); PNG: R, G, B as the view shows them, 8 bits. The file appears complete or not at all. Where it cannot be
+// written (disk full, no permission), MachineError says why; the image is then saved in the folder for temporary files,
+// if that is possible, and the message says where.
 WriteResult write_image(const std::string& path, const Image& image, const WriteOptions& options = {});
 
 // An 8-bit picture as it is, without a view: [height][width][3], sRGB. For error maps and plots.

@@ -1,5 +1,5 @@
-// Writes images. Each is encoded in memory first, so that the bytes go to the disk by one function of ours, which knows why
-// the disk refused them.
+// Writes images. Each is encoded in memory first, so that the bytes go to the disk by one function of ours, which knows
+// why the disk refused them.
 #include "core/error.h"
 #include "core/file.h"
 #include "core/image/image_io.h"

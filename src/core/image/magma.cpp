@@ -1,5 +1,5 @@
-// The magma colour map by Nathaniel Smith and Stefan van der Walt, released by them under CC0: 256 sRGB colours of evenly
-// rising lightness, from black to pale yellow, that people with any kind of colour vision can order.
+// The magma colour map by Nathaniel Smith and Stefan van der Walt, released by them under CC0: 256 sRGB colours of
+// evenly rising lightness, from black to pale yellow, that people with any kind of colour vision can order.
 #include "core/image/flip.h"
 
 #include <algorithm>

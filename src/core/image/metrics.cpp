@@ -1,7 +1,6 @@
 #include "core/image/metrics.h"
 
 #include "core/error.h"
-#include "core/image/flip.h"
 
 #include <fmt/format.h>
 
@@ -19,12 +18,6 @@ bool finite_pixel(const float* image, const float* reference) {
     for (int c = 0; c < 3; ++c)
         if (!std::isfinite(image[c]) || !std::isfinite(reference[c])) return false;
     return true;
-}
-
-void check_same_size(const Image& image, const Image& reference) {
-    if (image.width != reference.width || image.height != reference.height)
-        throw InputError(
-            fmt::format("the image has {} pixels, but the reference has {}", image.size_text(), reference.size_text()));
 }
 
 }  // namespace
@@ -63,7 +56,8 @@ Metrics measure(std::span<const float> image, std::span<const float> reference) 
             metrics.reference_mean[c] += r;
             squares += d * d;
             relative_squares += d * d / (r * r + 0.01);
-            // Light is not negative, but a pixel filter with negative lobes can make it so; |R| keeps the denominator positive.
+            // Light is not negative, but a pixel filter with negative lobes can make it so; |R| keeps the denominator
+            // positive.
             absolute += std::fabs(d) / (std::fabs(r) + 0.01);
             symmetric += 2.0 * std::fabs(d) / (std::fabs(a) + std::fabs(r) + 0.01);
         }
@@ -95,6 +89,12 @@ Metrics measure(std::span<const float> image, std::span<const float> reference) 
     return metrics;
 }
 
+void check_same_size(const Image& image, const Image& reference) {
+    if (image.width != reference.width || image.height != reference.height)
+        throw InputError(
+            fmt::format("the image has {} pixels, but the reference has {}", image.size_text(), reference.size_text()));
+}
+
 Metrics measure(const Image& image, const Image& reference) {
     check_same_size(image, reference);
     return measure(image.rgb().pixels, reference.rgb().pixels);
@@ -122,19 +122,19 @@ Comparison compare_images(const Image& image, const Image& reference) {
         left_out.push_back(i);
         for (int c = 0; c < 3; ++c) a[c] = r[c] = std::isfinite(r[c]) ? r[c] : 0.0f;
     }
-    comparison.flip_error = (comparison.hdr ? flip_hdr(shown, wanted) : flip_ldr(shown, wanted)).error;
-    for (const size_t i : left_out) comparison.flip_error[i] = std::numeric_limits<float>::quiet_NaN();
+    comparison.flip = comparison.hdr ? flip_hdr(shown, wanted) : flip_ldr(shown, wanted);
+    for (const size_t i : left_out) comparison.flip.error[i] = std::numeric_limits<float>::quiet_NaN();
     double sum = 0.0;
-    for (const float error : comparison.flip_error)
+    for (const float error : comparison.flip.error)
         if (!std::isnan(error)) sum += error;
-    comparison.flip = comparison.metrics.pixels > 0 ? sum / double(comparison.metrics.pixels) : kNotANumber;
+    comparison.flip.mean = comparison.metrics.pixels > 0 ? sum / double(comparison.metrics.pixels) : kNotANumber;
     return comparison;
 }
 
 std::vector<uint8_t> error_picture(const Comparison& comparison) {
     std::vector<uint8_t> bytes;
-    bytes.reserve(3 * comparison.flip_error.size());
-    for (const float error : comparison.flip_error) {
+    bytes.reserve(3 * comparison.flip.error.size());
+    for (const float error : comparison.flip.error) {
         const std::array<uint8_t, 3> color = std::isnan(error) ? std::array<uint8_t, 3>{0, 255, 0} : magma(error);
         bytes.insert(bytes.end(), color.begin(), color.end());
     }

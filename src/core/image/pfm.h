@@ -1,5 +1,5 @@
-// PFM, the portable float map (netpbm's format "PF" for RGB and "Pf" for grey): text header, then floats from the bottom
-// row up. OpenImageIO 2.4 cannot write it.
+// PFM, the portable float map (netpbm's format "PF" for RGB and "Pf" for grey): text header, then floats from the
+// bottom row up. OpenImageIO 2.4 cannot write it.
 #pragma once
 
 #include "core/image/image.h"
@@ -11,10 +11,11 @@
 
 namespace lampyris {
 
-// `image` must have one or three channels, whose names are lost. Little-endian, scale 1. Every float survives, bit by bit.
+// `image` must have one or three channels, whose names are lost. Little-endian, scale 1. Every float survives, bit by
+// bit.
 std::vector<std::byte> encode_pfm(const Image& image);
-// Either byte order. The numbers are multiplied by the header's scale, as pbrt does. Throws InputError that says what is wrong
-// with the file, without the file's name.
+// Either byte order. The numbers are multiplied by the header's scale, as pbrt does. Throws InputError that says what
+// is wrong with the file, without the file's name.
 Image decode_pfm(std::span<const std::byte> bytes);
 
 }  // namespace lampyris

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Writes flip_expected.json: what the authors' FLIP says about the image pairs that flip_test.cpp makes.
 
-Needs numpy and flip-evaluator 1.7 from PyPI. The pairs are made here and in the test by the same integer arithmetic, so that
-both have the same floats:
+Needs numpy and flip-evaluator 1.7 from PyPI. The pairs are made here and in the test by the same integer arithmetic,
+so that both have the same floats:
 
     python3 -m venv venv && venv/bin/pip install numpy flip-evaluator==1.7 && venv/bin/python flip_expected.py
 """
@@ -36,7 +36,7 @@ def reference_value(x, y, c, width, height, peak):
 
 
 def make(width, height, peak, amount, seed):
-    """The reference, and the image: the reference with noise of `amount` times its value, and one pixel twice as bright."""
+    """The reference, and the image: the reference times noise of width `amount`, and one pixel twice as bright."""
     reference = numpy.zeros((height, width, 3), dtype=numpy.float32)
     image = numpy.zeros_like(reference)
     for y in range(height):
@@ -73,7 +73,8 @@ def main():
             case["stop_exposure"] = round(parameters["stopExposure"], 5)
             case["exposures"] = parameters["numExposures"]
         cases.append(case)
-    text = "{\"evaluator\": \"flip-evaluator 1.7\", \"cases\": [\n" + ",\n".join(json.dumps(case) for case in cases) + "\n]}\n"
+    rows = ",\n".join(json.dumps(case) for case in cases)
+    text = f'{{"evaluator": "flip-evaluator 1.7", "cases": [\n{rows}\n]}}\n'
     pathlib.Path(__file__).with_suffix(".json").write_text(text)
 
 

@@ -1,0 +1,80 @@
+// The lampyris program: finds the subcommand, and turns what it throws into a message and an exit code.
+#include "commands/command.h"
+#include "core/error.h"
+#include "core/version.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <new>
+#include <string>
+#include <vector>
+
+namespace lampyris {
+
+std::vector<Command>& commands() {
+    static std::vector<Command> list;  // a function's: commands register before main, in an order that is not defined
+    return list;
+}
+
+namespace {
+
+// CLI11 would only say that a subcommand is required.
+void check_command_name(const CLI::App& app, int argc, char** argv) {
+    if (argc < 2 || argv[1][0] == '-') return;
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+        names.push_back(command->get_name());
+    if (std::find(names.begin(), names.end(), argv[1]) != names.end()) return;
+    throw InputError(fmt::format("lampyris: error: there is no command '{}'{}; the commands are {}", argv[1],
+                                 did_you_mean(argv[1], names), list_of(names)));
+}
+
+int run_command_line(int argc, char** argv) {
+    CLI::App app("Lampyris, a laboratory for light transport.", "lampyris");
+    app.set_version_flag("--version", fmt::format("lampyris {}", version()));
+    app.require_subcommand(1);
+    app.get_formatter()->column_width(36);
+    app.footer("'lampyris COMMAND --help' tells a command's options.");
+    std::function<int()> run;
+    for (const Command& command : commands()) command.add(app, run);
+    check_command_name(app, argc, argv);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        // Help and version are no errors; every real one is a wrong argument.
+        return app.exit(error) == 0 ? int(ExitCode::kDone) : int(ExitCode::kBadInput);
+    }
+    const int code = run();
+    // A result that could not be written (a full disk, say) must not look like success.
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+        throw MachineError(fmt::format("cannot write to standard output: {}", std::strerror(errno)));
+    return code;
+}
+
+int report(const std::string& message, ExitCode code) {
+    std::fflush(stdout);
+    fmt::print(stderr, "{}\n", message);
+    return int(code);
+}
+
+}  // namespace
+}  // namespace lampyris
+
+int main(int argc, char** argv) {
+    using namespace lampyris;
+    try {
+        return run_command_line(argc, argv);
+    } catch (const Error& error) {
+        return report(error.what(), error.code());
+    } catch (const std::bad_alloc&) {
+        return report("lampyris: error: out of memory", ExitCode::kMachineCannot);
+    } catch (const std::exception& error) {
+        return report(
+            fmt::format("lampyris: error: {} (this should not have happened: please report it)", error.what()),
+            ExitCode::kMachineCannot);
+    }
+}

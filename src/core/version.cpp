@@ -1,0 +1,7 @@
+#include "core/version.h"
+
+namespace lampyris {
+
+const char* version() { return LAMPYRIS_VERSION; }
+
+}  // namespace lampyris
