@@ -25,8 +25,9 @@ def noise(x, y, c, seed):
     return (h >> 8) / 16777216.0
 
 
-def reference_value(x, y, c, width, height, peak):
+def reference_value(x, y, c, size, peak):
     """Ramps in three directions, a checkerboard of 5 pixels in one quadrant, and a square lamp of `peak`."""
+    width, height = size
     value = [x / width, y / height, (x + y) / (width + height)][c]
     if 2 * x < width and 2 * y < height:
         value = 0.125 if (x // 5 + y // 5 + c) % 2 else 0.75
@@ -42,7 +43,7 @@ def make(width, height, peak, amount, seed):
     for y in range(height):
         for x in range(width):
             for c in range(3):
-                value = reference_value(x, y, c, width, height, peak)
+                value = reference_value(x, y, c, (width, height), peak)
                 reference[y, x, c] = value
                 image[y, x, c] = value * (1.0 + amount * (noise(x, y, c, seed) - 0.5))
     image[height // 2, width // 2] *= 2.0
@@ -65,9 +66,19 @@ def main():
         if dynamic_range == "LDR":
             reference, image = reference.clip(0, 1), image.clip(0, 1)
         error, mean, parameters = flip_evaluator.evaluate(
-            reference, image, dynamic_range, inputsRGB=False, applyMagma=False)
-        case = {"name": name, "range": dynamic_range, "width": width, "height": height, "peak": peak, "amount": amount,
-                "seed": seed, "mean": round(float(mean), 7), "error": [round(float(e), 5) for e in error.flatten()]}
+            reference, image, dynamic_range, inputsRGB=False, applyMagma=False
+        )
+        case = {
+            "name": name,
+            "range": dynamic_range,
+            "width": width,
+            "height": height,
+            "peak": peak,
+            "amount": amount,
+            "seed": seed,
+            "mean": round(float(mean), 7),
+            "error": [round(float(e), 5) for e in error.flatten()],
+        }
         if dynamic_range == "HDR":
             case["start_exposure"] = round(parameters["startExposure"], 5)
             case["stop_exposure"] = round(parameters["stopExposure"], 5)
