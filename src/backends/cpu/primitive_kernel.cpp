@@ -22,9 +22,6 @@ struct PrimitiveKernel {
 }  // namespace
 }  // namespace kernel
 
-#if !__has_include("core/kernel/shapes.h")
-bool primitive_hit(void* const*, uint32_t, uint32_t, const float*, const float*, float, float&) { return false; }
-#else
 bool primitive_hit(void* const* scene_buffers, uint32_t geometry, uint32_t primitive, const float origin[3],
                    const float direction[3], float t_max, float& t) {
     kernel::PrimitiveKernel<kernel::kAllEffects> code{scene_buffers, nullptr, nullptr, nullptr};
@@ -35,7 +32,6 @@ bool primitive_hit(void* const* scene_buffers, uint32_t geometry, uint32_t primi
     }
     return code.quadric_hit(geometry, o, d, t_max, t);
 }
-#endif
 
 PrimitiveBounds primitive_bounds(const Scene& scene, uint32_t geometry, uint32_t primitive) {
     const kernel::GeometryRecord& record = scene.geometries[geometry];

@@ -170,6 +170,8 @@ struct LightRecord {
 
 // ---- Camera, film, scene ---------------------------------------------------------------------------------------------
 
+CONST uint SAMPLER_SOBOL = 0u;        // padded two-dimensional Owen-scrambled Sobol
+CONST uint SAMPLER_INDEPENDENT = 1u;
 CONST uint CAMERA_PERSPECTIVE = 0u;
 CONST uint CAMERA_ORTHOGRAPHIC = 1u;
 CONST uint PIXEL_FILTER_BOX = 0u;
@@ -195,6 +197,25 @@ struct SceneRecord {
     uvec4 lights;   // number of lights, number of infinite ones, offset of the choosing CDF in `distributions` (count + 1 floats), unused
     uvec4 counts;   // geometries, instances, root node of the top-level BVH, unused
     vec4 bounds;    // world's bounding sphere: centre, radius
+};
+
+// ---- Film ------------------------------------------------------------------------------------------------------------
+
+// Sums are compensated (Neumaier 1974), sample by sample, so that they do not depend on how passes are cut into dispatches,
+// and a million samples lose nothing.
+struct FilmPixel {
+    vec4 sum;       // filter-weighted radiance, sum of the weights
+    vec4 low;       // what rounding dropped from `sum`
+    vec4 squares;   // sums of squares of the weighted radiance, for the variance; w: what the first hits' depth sums to
+    vec4 albedo;    // sum over samples; w: number of samples that hit something
+    vec4 normal;    // sum over samples
+    uvec4 counts;   // samples, rays, non-finite samples, pass of the first non-finite sample
+};
+
+// The part of the image that is rendered, in pixels of the full film, and which samples.
+struct FilmWindow {
+    uvec4 pixels;   // x0, y0, width, height
+    uvec4 samples;  // first sample, number of samples, seed, sampler kind
 };
 
 #endif

@@ -63,9 +63,6 @@ FN uint sobol_second_reversed(uint x) {
     return x;
 }
 
-CONST uint SAMPLER_SOBOL = 0u;        // padded two-dimensional Owen-scrambled Sobol
-CONST uint SAMPLER_INDEPENDENT = 1u;
-
 struct Sampler {
     uint key;        // of seed and pixel
     uint index;      // of the sample

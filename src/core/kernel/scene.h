@@ -14,8 +14,10 @@
 #include "core/kernel/sampling.h"
 #include "core/kernel/texture.h"
 #include "core/kernel/shapes.h"
+#include "core/kernel/trace.h"
 #include "core/kernel/bsdf.h"
 #include "core/kernel/material.h"
+#include "core/kernel/intersect.h"
 #include "core/kernel/light.h"
 #include "core/kernel/camera.h"
 

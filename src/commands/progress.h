@@ -1,0 +1,26 @@
+// How a rendering tells where it is: one line that is redrawn on a terminal, plain lines elsewhere, nothing when quiet.
+#pragma once
+
+#include "core/render_session.h"
+
+#include <string>
+
+namespace lampyris {
+
+class ProgressDisplay {
+ public:
+    ProgressDisplay(bool quiet, BudgetLimits limits);
+    void show(const RenderProgress& progress);
+    // "relMSE about 1.2e-03 (estimated); halving it costs another 12 s"
+    static std::string error_text(const RenderProgress& progress);
+
+ private:
+    double share_done(const RenderProgress& progress) const;
+    bool quiet_, terminal_;
+    BudgetLimits limits_;
+    double last_plain_s_ = -1e9;
+};
+
+std::string duration_text(double seconds);  // "850 ms", "12.3 s", "4 min 10 s", "2 h 3 min"
+
+}  // namespace lampyris

@@ -1,0 +1,57 @@
+// The command line of `lampyris render`.
+#pragma once
+
+#include "core/device.h"
+#include "core/image/image_io.h"
+#include "core/render_session.h"
+#include "core/scene/build.h"
+
+#include <CLI/CLI.hpp>
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lampyris {
+
+struct RenderOptions {
+    std::string scene;
+    std::vector<std::string> outputs;
+    std::string integrator;  // NAME[:key=value,...]; empty: the scene's
+    std::string backend = "cpu";
+    DeviceOptions device;
+    std::optional<uint32_t> seed;
+    BudgetLimits limits;
+    BuildOptions build;
+    WriteOptions write;
+    std::string reference, statistics_file;
+    std::vector<std::string> plugins;
+    bool skip_unsupported = false, quiet = false;
+    std::optional<std::array<int, 3>> replay;  // x, y, pass
+    std::vector<std::pair<std::string, std::string>> settings_of(const std::string& section) const;
+
+    // Interprets the texts below; throws InputError. Loads the plugins.
+    void finish();
+    struct Texts {
+        std::string resolution, crop, time, max_memory, replay;
+        std::vector<std::string> settings;  // SECTION.KEY=VALUE
+        std::optional<uint64_t> spp, passes;
+        std::optional<double> target_error;
+    } texts;
+
+ private:
+    std::map<std::string, std::vector<std::pair<std::string, std::string>>> sections_;
+};
+
+void add_render_options(CLI::App& command, RenderOptions& options);
+
+// "90", "30s", "5min", "2h", "500ms" in seconds; "8G", "512M", "1000" in bytes. Throw InputError that shows what is valid.
+double parse_duration(const std::string& text);
+uint64_t parse_size(const std::string& text);
+// N integers separated by `separator`. Throws InputError: "error: OPTION text: expected FORM".
+std::vector<int> parse_integers(const std::string& text, char separator, size_t count, const std::string& option, const std::string& form);
+
+}  // namespace lampyris

@@ -1,0 +1,101 @@
+#include "core/film.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lampyris {
+namespace {
+
+struct Estimate {
+    double mean = 0.0, variance = 0.0;  // variance of the mean; NaN below two samples
+};
+
+// A channel's mean and the variance of that mean. The weights of filter importance sampling are constant but for their sign,
+// so their average takes the place of the weight.
+Estimate estimate(double sum, double squares, double weight_sum, double n) {
+    if (n < 1.0 || weight_sum == 0.0) return {0.0, std::numeric_limits<double>::quiet_NaN()};
+    const double weight = weight_sum / n;
+    const double mean = sum / weight_sum;
+    if (n < 2.0) return {mean, std::numeric_limits<double>::quiet_NaN()};
+    const double second = squares / (n * weight * weight);
+    return {mean, std::max(0.0, second - mean * mean) / (n - 1.0)};
+}
+
+std::array<Estimate, 3> estimates(const kernel::FilmPixel& p) {
+    const double n = double(p.counts.x - p.counts.z);
+    const double weight = double(p.sum.w) + double(p.low.w);
+    return {estimate(double(p.sum.x) + double(p.low.x), p.squares.x, weight, n),
+            estimate(double(p.sum.y) + double(p.low.y), p.squares.y, weight, n),
+            estimate(double(p.sum.z) + double(p.low.z), p.squares.z, weight, n)};
+}
+
+}  // namespace
+
+Film::Film(Device& device, const Scene& scene, const std::array<int, 4>& crop)
+    : window_(crop[0], crop[1], crop[2] - crop[0], crop[3] - crop[1]), full_width_(scene.width()), full_height_(scene.height()) {
+    buffer_ = device.create_buffer(size_t(pixel_count()) * sizeof(kernel::FilmPixel), "the film");
+    buffer_->fill_zero();
+    pixels_.resize(pixel_count());
+}
+
+void Film::download() { buffer_->download(pixels_.data(), pixels_.size() * sizeof(kernel::FilmPixel)); }
+
+FilmSummary Film::summary() const {
+    FilmSummary result;
+    result.min_samples = std::numeric_limits<uint32_t>::max();
+    double error = 0.0;
+    for (size_t i = 0; i < pixels_.size(); ++i) {
+        const kernel::FilmPixel& p = pixels_[i];
+        result.samples += p.counts.x;
+        result.rays += p.counts.y;
+        result.min_samples = std::min(result.min_samples, p.counts.x);
+        result.max_samples = std::max(result.max_samples, p.counts.x);
+        if (p.counts.z > 0 && result.non_finite == 0)
+            result.first_non_finite = {uint32_t(window_.x + i % window_.z), uint32_t(window_.y + i / window_.z), p.counts.w};
+        result.non_finite += p.counts.z;
+        for (const Estimate& e : estimates(p)) error += e.variance / (e.mean * e.mean + 0.01);
+    }
+    result.estimated_relmse = error / (3.0 * double(pixels_.size()));
+    return result;
+}
+
+std::vector<float> Film::rgb() const {
+    std::vector<float> result;
+    result.reserve(pixels_.size() * 3);
+    for (const kernel::FilmPixel& p : pixels_)
+        for (const Estimate& e : estimates(p)) result.push_back(float(e.mean));
+    return result;
+}
+
+Image Film::image() const {
+    Image image(int(window_.z), int(window_.w),
+                {"R", "G", "B", "albedo.R", "albedo.G", "albedo.B", "normal.X", "normal.Y", "normal.Z", "depth.Z",
+                 "variance.R", "variance.G", "variance.B", "samples"});
+    image.x = int(window_.x);
+    image.y = int(window_.y);
+    image.full_width = int(full_width_);
+    image.full_height = int(full_height_);
+    float* out = image.pixels.data();
+    for (const kernel::FilmPixel& p : pixels_) {
+        const std::array<Estimate, 3> e = estimates(p);
+        for (int c = 0; c < 3; ++c) *out++ = float(e[size_t(c)].mean);
+        const float hits = p.albedo.w;
+        const float to_hits = hits > 0.0f ? 1.0f / hits : 0.0f;
+        for (int c = 0; c < 3; ++c) *out++ = p.albedo[c] * to_hits;
+        const glm::vec3 n(p.normal);
+        const float length = glm::length(n);
+        for (int c = 0; c < 3; ++c) *out++ = length > 0.0f ? n[c] / length : 0.0f;
+        *out++ = p.squares.w * to_hits;
+        for (int c = 0; c < 3; ++c) {
+            const double variance = e[size_t(c)].variance;
+            *out++ = std::isnan(variance) ? 0.0f : float(variance);
+        }
+        *out++ = float(p.counts.x);
+    }
+    return image;
+}
+
+}  // namespace lampyris

@@ -1,0 +1,48 @@
+// The film: what each pixel has added up so far on the device, and the image, error estimate and features made of it.
+#pragma once
+
+#include "core/device.h"
+#include "core/image/image.h"
+#include "core/kernel_types.h"
+#include "core/scene/scene.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace lampyris {
+
+struct FilmSummary {
+    uint64_t samples = 0, rays = 0;
+    uint32_t min_samples = 0, max_samples = 0;  // of a pixel
+    uint64_t non_finite = 0;
+    std::array<uint32_t, 3> first_non_finite{};  // x, y, pass; meaningful where non_finite > 0
+    // Estimated relMSE: the mean over pixels and channels of Var(mean) / (mean^2 + 0.01). Samples count as independent, which
+    // overstates the error of a stratified sampler. NaN below two samples a pixel.
+    double estimated_relmse = 0.0;
+};
+
+class Film {
+ public:
+    // Renders the pixels of `crop` (x0, y0, x1, y1, half-open, in the full picture).
+    Film(Device& device, const Scene& scene, const std::array<int, 4>& crop);
+
+    const BufferHandle& buffer() const { return buffer_; }  // FilmPixel, row by row
+    glm::uvec4 window() const { return window_; }           // x0, y0, width, height
+    uint32_t pixel_count() const { return window_.z * window_.w; }
+
+    void download();  // what the device has added up; the functions below look at the last download
+    FilmSummary summary() const;
+    std::vector<float> rgb() const;  // [height][width][3]
+    // R, G, B and the features albedo, normal, depth, variance (of the mean), samples.
+    Image image() const;
+    const std::vector<kernel::FilmPixel>& pixels() const { return pixels_; }
+
+ private:
+    glm::uvec4 window_;
+    uint32_t full_width_, full_height_;
+    BufferHandle buffer_;
+    std::vector<kernel::FilmPixel> pixels_;
+};
+
+}  // namespace lampyris

@@ -1,0 +1,33 @@
+#include "core/integrator.h"
+
+#include <array>
+
+namespace lampyris {
+
+Registry<IntegratorFactory>& integrators() {
+    static Registry<IntegratorFactory> registry("integrator", "How light is transported: the algorithm that makes the image.");
+    return registry;
+}
+
+IntegratorRegistration::IntegratorRegistration(const char* name, const char* summary, IntegratorFactory factory) {
+    ParameterSpecs specs = specs_of(factory.fields);
+    integrators().add({name, summary, std::move(specs)}, std::move(factory));
+}
+
+void render_samples(RenderSession& session, const char* kernel_file, const void* parameters, size_t parameter_bytes) {
+    Device& device = session.device;
+    const KernelHandle kernel = device.compile(kernel_file, session.scene.effects.mask());
+    const BufferHandle window = device.create_buffer(sizeof(kernel::FilmWindow), "film window");
+    const BufferHandle params = device.create_buffer(std::max<size_t>(parameter_bytes, 4), "parameters");
+    if (parameter_bytes) params->upload(parameters, parameter_bytes);
+    const std::array<BufferHandle, 3> buffers{window, params, session.film.buffer()};
+    while (const uint32_t count = session.next_passes()) {
+        const kernel::FilmWindow slice{session.film.window(),
+                                       {uint32_t(session.next_pass()), count, session.seed, session.sampler}};
+        window->upload(&slice, sizeof(slice));
+        device.run(*kernel, session.device_scene.get(), buffers, 0, session.film.pixel_count());
+        session.passes_finished(count);
+    }
+}
+
+}  // namespace lampyris

@@ -1,0 +1,47 @@
+// What a rendering kernel adds up for each pixel, and which pixel an index means.
+#ifndef LAMPYRIS_KERNEL_FILM
+#define LAMPYRIS_KERNEL_FILM
+
+// Consecutive indices lie close to each other: strips of eight rows, walked column by column, so that rays of one block of
+// work (CPU) or of one subgroup (GPU) take similar ways.
+FN uvec2 film_pixel_of(uint index, uvec4 window) {
+    uint strip = index / (8u * window.z);
+    uint rest = index - strip * 8u * window.z;
+    uint height = min(8u, window.w - strip * 8u);
+    uint column = rest / height;
+    return uvec2(column, strip * 8u + rest - column * height);
+}
+
+FN float compensated_add(float sum, float value, INOUT(float) low) {
+    float next = sum + value;
+    low += abs(sum) >= abs(value) ? (sum - next) + value : (value - next) + sum;
+    return next;
+}
+
+// Adds one sample. Radiance that is not finite is counted and located, not averaged in.
+FN void film_add(INOUT(FilmPixel) p, vec3 radiance, float weight, uint pass) {
+    p.counts.x += 1u;
+    if (!is_finite3(radiance)) {
+        if (p.counts.z == 0u) p.counts.w = pass;
+        p.counts.z += 1u;
+        return;
+    }
+    vec3 value = radiance * weight;
+    p.sum.x = compensated_add(p.sum.x, value.x, p.low.x);
+    p.sum.y = compensated_add(p.sum.y, value.y, p.low.y);
+    p.sum.z = compensated_add(p.sum.z, value.z, p.low.z);
+    p.sum.w = compensated_add(p.sum.w, weight, p.low.w);
+    p.squares.x += value.x * value.x;
+    p.squares.y += value.y * value.y;
+    p.squares.z += value.z * value.z;
+}
+
+// What the film makes of radiance before it is added: the sensor's imaging ratio and the clamp of `maxcomponentvalue`.
+FN vec3 film_sensor(vec3 radiance) {
+    vec3 value = radiance * scene[0].camera.lens.w;
+    float largest = max_component(value);
+    float limit = scene[0].camera.lens.z;
+    return limit > 0.0f && largest > limit ? value * (limit / largest) : value;
+}
+
+#endif

@@ -1,0 +1,195 @@
+// From a ray to a point on a surface: trace, then recompute distance and position from the primitive in shared code, so
+// that what follows does not depend on which tracer answered.
+#ifndef LAMPYRIS_KERNEL_INTERSECT
+#define LAMPYRIS_KERNEL_INTERSECT
+
+// How many masked or invisible surfaces a ray may pass before it is an error.
+CONST uint MAX_PASSED_SURFACES = 100000u;
+// Shadow rays stop short of the light by this share of their length (as pbrt's do).
+CONST float SHADOW_EPSILON = 1e-4f;
+
+// The triangle's point that the ray meets (Möller and Trumbore 1997 for the barycentrics), in the geometry set's space.
+FN void triangle_surface(uint geometry, uint primitive, vec3 o, vec3 d, INOUT(Surface) s) {
+    uvec4 data = geometries[geometry].data;
+    uint base = data.z + 3u * primitive;
+    uint i0 = indices[base];
+    uint i1 = indices[base + 1u];
+    uint i2 = indices[base + 2u];
+    vec3 p0 = vertex_position(data.w + i0);
+    vec3 p1 = vertex_position(data.w + i1);
+    vec3 p2 = vertex_position(data.w + i2);
+    vec3 e1 = p1 - p0;
+    vec3 e2 = p2 - p0;
+    vec3 n = cross3(e1, e2);
+    vec3 from = o - p0;
+    vec3 q = cross3(d, e2);
+    float det = dot3(e1, q);
+    vec3 r = cross3(from, e1);
+    float inverse = det != 0.0f ? 1.0f / det : 0.0f;
+    // Rounding may put the point just outside: back onto the triangle.
+    float b1 = clamp(dot3(from, q) * inverse, 0.0f, 1.0f);
+    float b2 = clamp(dot3(d, r) * inverse, 0.0f, 1.0f - b1);
+    float b0 = 1.0f - b1 - b2;
+    float along = dot3(d, n);
+    s.distance = along != 0.0f ? -dot3(from, n) / along : 0.0f;
+    s.position = b0 * p0 + b1 * p1 + b2 * p2;
+    s.error = gamma_bound(7.0f) * (abs(b0 * p0) + abs(b1 * p1) + abs(b2 * p2));
+    float n_length = length_of(n);
+    s.ng = n_length > 0.0f ? n / n_length : -d / length_of(d);
+
+    vec2 uv0 = vec2(0.0f, 0.0f);
+    vec2 uv1 = vec2(1.0f, 0.0f);
+    vec2 uv2 = vec2(1.0f, 1.0f);
+    if ((data.y & GEOMETRY_HAS_UVS) != 0u) {
+        uint first = geometries[geometry].attributes.y;
+        uv0 = vertex_uv(first + i0);
+        uv1 = vertex_uv(first + i1);
+        uv2 = vertex_uv(first + i2);
+    }
+    s.uv = b0 * uv0 + b1 * uv1 + b2 * uv2;
+    vec2 duv1 = uv1 - uv0;
+    vec2 duv2 = uv2 - uv0;
+    float duv_det = duv1.x * duv2.y - duv1.y * duv2.x;
+    bool has_uv_map = abs(duv_det) >= 1e-9f;
+    float duv_inverse = has_uv_map ? 1.0f / duv_det : 0.0f;
+    if (has_uv_map) {
+        s.dpdu = (e1 * duv2.y - e2 * duv1.y) * duv_inverse;
+        s.dpdv = (e2 * duv1.x - e1 * duv2.x) * duv_inverse;
+        has_uv_map = length_squared(cross3(s.dpdu, s.dpdv)) > 0.0f;
+    }
+    if (!has_uv_map) {
+        Frame frame = frame_from_z(s.ng);
+        s.dpdu = frame.x;
+        s.dpdv = frame.y;
+    }
+    s.dndu = vec3(0.0f);
+    s.dndv = vec3(0.0f);
+
+    if (HAS(EFFECT_SMOOTH_NORMALS) && (data.y & GEOMETRY_HAS_NORMALS) != 0u) {
+        uint first = geometries[geometry].attributes.x;
+        vec3 n0 = vertex_normal(first + i0);
+        vec3 n1 = vertex_normal(first + i1);
+        vec3 n2 = vertex_normal(first + i2);
+        vec3 ns = b0 * n0 + b1 * n1 + b2 * n2;
+        float l2 = length_squared(ns);
+        s.ns = l2 > 0.0f ? ns / sqrt(l2) : s.ng;
+        s.ng = face_forward(s.ng, s.ns);
+        if (HAS(EFFECT_BUMP) && has_uv_map) {
+            vec3 dn1 = n1 - n0;
+            vec3 dn2 = n2 - n0;
+            s.dndu = (dn1 * duv2.y - dn2 * duv1.y) * duv_inverse;
+            s.dndv = (dn2 * duv1.x - dn1 * duv2.x) * duv_inverse;
+        }
+    } else {
+        if ((data.y & GEOMETRY_FLIP) != 0u) s.ng = -s.ng;
+        s.ns = s.ng;
+    }
+}
+
+// Moves a surface point from an instance's space to the world.
+FN void surface_to_world(uint instance, INOUT(Surface) s) {
+    TransformRecord m = instances[instance].transform;
+    s.error = transform_error(m.to0, m.to1, m.to2, s.position, s.error);
+    s.position = transform_point(m.to0, m.to1, m.to2, s.position);
+    s.ng = unit(transform_normal(m.from0, m.from1, m.from2, s.ng));
+    vec3 ns = transform_normal(m.from0, m.from1, m.from2, s.ns);
+    float ns_length = length_of(ns);
+    s.ns = face_forward(ns / ns_length, s.ng);
+    s.dpdu = transform_vector(m.to0, m.to1, m.to2, s.dpdu);
+    s.dpdv = transform_vector(m.to0, m.to1, m.to2, s.dpdv);
+    if (HAS(EFFECT_BUMP)) {
+        s.dndu = transform_normal(m.from0, m.from1, m.from2, s.dndu) / ns_length;
+        s.dndv = transform_normal(m.from0, m.from1, m.from2, s.dndv) / ns_length;
+    }
+}
+
+// The surface point of a hit; the ray is the one that was traced. False where the shared code finds no point (a tracer that
+// transforms rays itself may see the rim of an instanced quadric one rounding error farther out).
+FN bool surface_at(IN(Hit) hit, vec3 o, vec3 d, INOUT(Surface) s) {
+    vec3 set_o = o;
+    vec3 set_d = d;
+    if (HAS(EFFECT_INSTANCES) && hit.instance != 0u) {
+        TransformRecord m = instances[hit.instance].transform;
+        set_o = transform_point(m.from0, m.from1, m.from2, o);
+        set_d = transform_vector(m.from0, m.from1, m.from2, d);
+    }
+    uint kind = geometries[hit.geometry].data.x;
+    if (HAS(EFFECT_BILINEAR) && kind == GEOMETRY_BILINEAR) {
+        if (!bilinear_surface(hit.geometry, hit.primitive, set_o, set_d, s)) return false;
+    } else if (HAS(EFFECT_QUADRICS) && kind >= GEOMETRY_SPHERE) {
+        if (!quadric_surface(hit.geometry, set_o, set_d, s)) return false;
+    } else {
+        triangle_surface(hit.geometry, hit.primitive, set_o, set_d, s);
+    }
+    if (HAS(EFFECT_INSTANCES) && hit.instance != 0u) surface_to_world(hit.instance, s);
+    uvec4 ids = geometries[hit.geometry].ids;
+    s.instance = hit.instance;
+    s.geometry = hit.geometry;
+    s.primitive = hit.primitive;
+    s.material = ids.x;
+    s.light = ids.y == NONE ? NONE : ids.y + hit.primitive;
+    return true;
+}
+
+// Whether a masked surface lets this ray pass: by chance, with a number that belongs to the ray (as pbrt does).
+FN bool alpha_passes(IN(Surface) s, vec3 o, vec3 d) {
+    if (geometries[s.geometry].ids.z == NONE && geometries[s.geometry].alpha.x >= 1.0f) return false;
+    TextureContext context;
+    context.position = s.position;
+    context.normal = s.ng;
+    context.uv = s.uv;
+    float alpha = surface_alpha(s.geometry, context);
+    if (alpha >= 1.0f) return false;
+    if (alpha <= 0.0f) return true;
+    uint h = hash_combine(hash_combine(floatBitsToUint(o.x), floatBitsToUint(o.y)), floatBitsToUint(o.z));
+    h = hash_combine(hash_combine(h, floatBitsToUint(d.x)), hash_combine(floatBitsToUint(d.y), floatBitsToUint(d.z)));
+    return unit_float(h) > alpha;
+}
+
+FN bool is_interface(IN(Surface) s) { return materials[s.material].data.x == MATERIAL_INTERFACE; }
+
+// The first surface point that the ray meets; masked surfaces are passed, interfaces are not. Directions are unit length.
+// `rays` counts the rays that were traced.
+FN bool intersect_scene(vec3 origin, vec3 direction, OUT(Surface) s, INOUT(uint) rays) {
+    vec3 o = origin;
+    float passed = 0.0f;
+    for (uint i = 0u; i < MAX_PASSED_SURFACES; ++i) {
+        Hit hit;
+        rays += 1u;
+        if (!trace_closest(o, direction, INFINITE_DISTANCE, hit)) return false;
+        if (!surface_at(hit, o, direction, s)) return false;
+        s.distance += passed;
+        if (!(HAS(EFFECT_ALPHA) && alpha_passes(s, o, direction))) return true;
+        passed = s.distance;
+        o = offset_origin(s.position, s.error, s.ng, direction);
+    }
+    REPORT_UNFINISHED();
+    return false;
+}
+
+// Whether anything opaque lies between a surface point and a point `distance` away along the unit direction.
+FN bool scene_occluded(vec3 position, vec3 error, vec3 ng, vec3 direction, float distance, INOUT(uint) rays) {
+    vec3 o = offset_origin(position, error, ng, direction);
+    float t_max = distance >= INFINITE_DISTANCE ? INFINITE_DISTANCE : distance * (1.0f - SHADOW_EPSILON);
+    if (!HAS(EFFECT_ALPHA) && !HAS(EFFECT_INTERFACE)) {
+        rays += 1u;
+        return trace_occluded(o, direction, t_max);
+    }
+    for (uint i = 0u; i < MAX_PASSED_SURFACES; ++i) {
+        Hit hit;
+        Surface s;
+        rays += 1u;
+        if (!trace_closest(o, direction, t_max, hit)) return false;
+        if (!surface_at(hit, o, direction, s)) return false;
+        bool passes = HAS(EFFECT_INTERFACE) && is_interface(s);
+        if (HAS(EFFECT_ALPHA) && !passes) passes = alpha_passes(s, o, direction);
+        if (!passes) return true;
+        o = offset_origin(s.position, s.error, s.ng, direction);
+        t_max = distance >= INFINITE_DISTANCE ? INFINITE_DISTANCE : t_max - s.distance;
+        if (!(t_max > 0.0f)) return false;
+    }
+    REPORT_UNFINISHED();
+    return true;
+}
+
+#endif

@@ -1,0 +1,82 @@
+#include "core/render_session.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <csignal>
+#include <limits>
+
+namespace lampyris {
+namespace {
+
+// A slice this long keeps Ctrl-C and the progress line responsive, and the film's download far below a per cent.
+constexpr double kSliceSeconds = 0.4;
+constexpr double kLookSeconds = 2.0;
+
+std::atomic<bool> interrupt_flag{false};
+
+extern "C" void on_interrupt(int signal) {
+    interrupt_flag.store(true);
+    std::signal(signal, SIG_DFL);
+}
+
+}  // namespace
+
+void install_interrupt_handler() {
+    std::signal(SIGINT, &on_interrupt);
+    std::signal(SIGTERM, &on_interrupt);
+}
+
+bool interrupt_requested() { return interrupt_flag.load(); }
+
+RenderSession::RenderSession(Device& device_, const Scene& scene_, DeviceSceneHandle device_scene_, Film& film_, BudgetLimits limits)
+    : device(device_), scene(scene_), device_scene(std::move(device_scene_)), film(film_), limits_(limits) {
+    progress_.estimated_error = std::numeric_limits<double>::quiet_NaN();
+}
+
+uint32_t RenderSession::next_passes() {
+    if (interrupt_requested()) interrupted_ = true;
+    if (interrupted_ || progress_.finished) return 0;
+    uint64_t count = 1;
+    if (seconds_per_pass_ > 0.0) count = uint64_t(std::clamp(kSliceSeconds / seconds_per_pass_, 1.0, 1048576.0));
+    // Twice as many as before at most: the first slices are short, and tell how long a pass takes.
+    count = std::min(count, std::max<uint64_t>(1, progress_.passes));
+    if (limits_.seconds && seconds_per_pass_ > 0.0) {
+        const double left = *limits_.seconds - progress_.wall_s;
+        count = std::min(count, uint64_t(std::max(1.0, std::floor(left / seconds_per_pass_))));
+    }
+    const uint64_t next_power = std::bit_ceil(progress_.passes + 1);
+    count = std::min(count, next_power - progress_.passes);
+    if (limits_.passes) count = std::min(count, *limits_.passes - progress_.passes);
+    if (count == 0) return 0;
+    slice_start_ = Clock::now();
+    return uint32_t(count);
+}
+
+void RenderSession::passes_finished(uint32_t count) {
+    const double seconds = std::chrono::duration<double>(Clock::now() - slice_start_).count();
+    progress_.passes += count;
+    progress_.wall_s += seconds;
+    seconds_per_pass_ = seconds / count;
+    if (limits_.passes && progress_.passes >= *limits_.passes) progress_.finished = true;
+    // The next pass must fit, or an average of half a pass would always be overdrawn.
+    if (limits_.seconds && progress_.wall_s + 0.5 * seconds_per_pass_ >= *limits_.seconds) progress_.finished = true;
+    if (interrupt_requested()) interrupted_ = true;
+    const bool look = progress_.finished || interrupted_ || std::has_single_bit(progress_.passes) ||
+                      progress_.wall_s - last_look_s_ >= kLookSeconds;
+    if (!look) return;
+    last_look_s_ = progress_.wall_s;
+    film.download();
+    const FilmSummary summary = film.summary();
+    progress_.estimated_error = summary.estimated_relmse;
+    progress_.rays = summary.rays;
+    progress_.samples = summary.samples;
+    // A handful of samples cannot vouch for an error.
+    constexpr uint32_t kTrustedSamples = 8;
+    if (limits_.target_error && summary.min_samples >= kTrustedSamples && summary.estimated_relmse <= *limits_.target_error)
+        progress_.finished = true;
+    if (on_progress) on_progress(progress_, film);
+}
+
+}  // namespace lampyris

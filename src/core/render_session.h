@@ -1,0 +1,80 @@
+// What an integrator's render() works with: device, scene, film, and a budget of passes.
+#pragma once
+
+#include "core/device.h"
+#include "core/film.h"
+#include "core/scene/scene.h"
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lampyris {
+
+// The first limit reached stops the rendering.
+struct BudgetLimits {
+    std::optional<uint64_t> passes;
+    std::optional<double> seconds;
+    std::optional<double> target_error;  // estimated relMSE
+};
+
+// The state of a rendering after some passes; what progress displays and statistics see.
+struct RenderProgress {
+    uint64_t passes = 0;
+    double wall_s = 0.0;           // spent rendering: without set-up, and without looking at the film
+    double estimated_error = 0.0;  // estimated relMSE; NaN where it is not known yet
+    uint64_t rays = 0, samples = 0;
+    bool finished = false;
+};
+
+class RenderSession {
+ public:
+    RenderSession(Device& device, const Scene& scene, DeviceSceneHandle device_scene, Film& film, BudgetLimits limits);
+
+    Device& device;
+    const Scene& scene;
+    const DeviceSceneHandle device_scene;
+    Film& film;
+    uint32_t seed = 0;
+    uint32_t sampler = 0;  // kernel::SAMPLER_*
+
+    // How many passes to run next, beginning with number next_pass(): 0 when the budget is spent or the user
+    // interrupts. Slices last a fraction of a second where passes are that short, and end at powers of two.
+    uint32_t next_passes();
+    // To be called after each slice.
+    void passes_finished(uint32_t count);
+    // The number of the next pass. It counts from 0, or from `first` (for replaying one pass alone).
+    uint64_t next_pass() const { return first_pass_ + progress_.passes; }
+    void start_at(uint64_t first) { first_pass_ = first; }
+    const RenderProgress& progress() const { return progress_; }
+    bool interrupted() const { return interrupted_; }
+
+    // Seconds of a phase ("eye_pass", "photon_tracing", ...).
+    void add_phase(const std::string& name, double seconds) { phases_[name] += seconds; }
+    const std::map<std::string, double>& phases() const { return phases_; }
+
+    // Called with the film downloaded after a slice that ends at a power of two, after the last one, and at least every two
+    // seconds.
+    std::function<void(const RenderProgress&, const Film&)> on_progress;
+
+ private:
+    using Clock = std::chrono::steady_clock;
+    BudgetLimits limits_;
+    RenderProgress progress_;
+    std::map<std::string, double> phases_;
+    Clock::time_point slice_start_{};
+    uint64_t first_pass_ = 0;
+    double seconds_per_pass_ = 0.0;
+    double last_look_s_ = 0.0;
+    bool interrupted_ = false;
+};
+
+// Ctrl-C: the first one lets the rendering end after its slice, and what is done is written; the second one ends the process.
+void install_interrupt_handler();
+bool interrupt_requested();
+
+}  // namespace lampyris

@@ -1,0 +1,117 @@
+#include "core/statistics.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+
+#include <cmath>
+
+namespace lampyris {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// JSON has no NaN: what is not known is null.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json parameters_json(const std::vector<std::pair<std::string, std::string>>& parameters) {
+    Json object = Json::object();
+    for (const auto& [name, value] : parameters) object[name] = Json::accept(value) ? Json::parse(value) : Json(value);
+    return object;
+}
+
+Json convergence_json(const std::vector<ConvergencePoint>& points) {
+    Json array = Json::array();
+    for (const ConvergencePoint& point : points) {
+        Json entry = {{"wall_s", point.wall_s}, {"passes", point.passes}, {"estimated_error", number(point.estimated_error)}};
+        if (point.against_reference)
+            for (const MetricFormula& formula : metric_formulas())
+                entry[formula.key] = number((*point.against_reference).*(formula.value));
+        array.push_back(std::move(entry));
+    }
+    return array;
+}
+
+Json effects_json(const Scene& scene) {
+    Json array = Json::array();
+    for (const EffectInfo& info : known_effects())
+        for (const EffectRequest& request : scene.effects.requests())
+            if (request.effect == info.effect)
+                array.push_back({{"name", info.name}, {"asked_by", request.asked_by}, {"simulated", true}});
+    for (const std::string& what : scene.unsupported)
+        array.push_back({{"name", what}, {"asked_by", what}, {"simulated", false}});
+    return array;
+}
+
+}  // namespace
+
+size_t peak_resident_bytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return size_t(usage.ru_maxrss) * 1024;
+}
+
+nlohmann::ordered_json statistics_json(const RunRecord& run, const Scene& scene) {
+    Json phases = Json::object();
+    for (const auto& [name, seconds] : run.phases) phases[name] = seconds;
+    Json kernels = Json::object();
+    for (const auto& [name, seconds] : run.device_statistics.kernel_s) kernels[name] = seconds;
+    Json result = {
+        {"schema", "lampyris.stats/1"},
+        {"version", version()},
+        {"scene", run.scene},
+        {"scene_hash", fmt::format("{:016x}", scene.hash)},
+        {"integrator", {{"name", run.integrator}, {"parameters", parameters_json(run.integrator_parameters)}}},
+        {"photon_map", nullptr},
+        {"backend", run.backend},
+        {"device", run.device},
+        {"threads", run.threads},
+        {"seed", run.seed},
+        {"sampler", run.sampler},
+        {"resolution", run.resolution},
+        {"crop", run.crop},
+        {"passes", run.progress.passes},
+        {"samples_per_pixel", run.samples_per_pixel},
+        {"wall_s", run.progress.wall_s},
+        {"total_s", run.total_s},
+        {"phases", phases},
+        {"kernels", kernels},
+        {"setup_s", {{"parse", run.parse_s}, {"scene", run.scene_s}, {"build", run.device_statistics.build_s}, {"compile", run.device_statistics.compile_s}}},
+        {"rays", run.film.rays},
+        {"samples", run.film.samples},
+        {"photons_emitted", 0},
+        {"photons_stored", 0},
+        {"peak_memory_bytes", peak_resident_bytes()},
+        {"device_memory_bytes", run.device_statistics.peak_memory_bytes},
+        {"estimated_error", number(run.progress.estimated_error)},
+        {"effects", effects_json(scene)},
+        {"radius", nullptr},
+        {"bucket_load", nullptr},
+        {"non_finite_samples", run.film.non_finite},
+        {"unsupported", scene.unsupported},
+        {"notes", scene.notes},
+        {"convergence", convergence_json(run.convergence)},
+        {"interrupted", run.interrupted},
+    };
+    if (run.film.non_finite > 0)
+        result["first_non_finite"] = {{"x", run.film.first_non_finite[0]}, {"y", run.film.first_non_finite[1]}, {"pass", run.film.first_non_finite[2]}};
+    return result;
+}
+
+std::map<std::string, std::string> image_metadata(const RunRecord& run, const Scene& scene) {
+    std::string parameters;
+    for (const auto& [name, value] : run.integrator_parameters) parameters += fmt::format("{}{}={}", parameters.empty() ? "" : ",", name, value);
+    return {{"lampyris.version", version()},
+            {"lampyris.scene", run.scene},
+            {"lampyris.scene_hash", fmt::format("{:016x}", scene.hash)},
+            {"lampyris.integrator", run.integrator},
+            {"lampyris.parameters", parameters},
+            {"lampyris.backend", run.backend},
+            {"lampyris.device", run.device},
+            {"lampyris.seed", std::to_string(run.seed)},
+            {"lampyris.sampler", run.sampler},
+            {"lampyris.passes", std::to_string(run.progress.passes)},
+            {"lampyris.wall_s", fmt::format("{:.3f}", run.progress.wall_s)}};
+}
+
+}  // namespace lampyris

@@ -1,0 +1,18 @@
+#include "core/integrator.h"
+#include "integrators/path/path.params.h"
+
+namespace lampyris {
+namespace {
+
+class Path : public Integrator {
+ public:
+    PathParams params;
+    void render(RenderSession& session) override {
+        render_samples(session, "integrators/path/path.kernel.h", &params, sizeof(params));
+    }
+};
+
+REGISTER_INTEGRATOR(Path, PATH_PARAMS, "path", "Path tracing with next-event estimation and multiple importance sampling.")
+
+}  // namespace
+}  // namespace lampyris

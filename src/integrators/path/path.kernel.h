@@ -1,0 +1,136 @@
+// Path tracing with next-event estimation, multiple importance sampling (Veach 1997, chapters 9 and 10) and Russian
+// roulette. One invocation adds a range of samples to one pixel.
+#include "core/kernel/scene.h"
+
+#include "core/kernel/film.h"
+#include "integrators/path/path.params.h"
+
+BUFFER_RO(0, FilmWindow, window)
+BUFFER_RO(1, PathParams, params)
+BUFFER_RW(2, FilmPixel, film)
+
+// Numbers that a path takes from its sampler: lens and filter, then a fixed number per vertex, so that a dimension means
+// the same in every sample whatever the path met before.
+CONST uint PATH_CAMERA_DIMENSIONS = 4u;
+CONST uint PATH_VERTEX_DIMENSIONS = 8u;
+
+// Direct light at a surface point from one sampled light.
+FN vec3 path_direct_light(IN(Surface) s, IN(Frame) frame, IN(Bsdf) bsdf, vec3 wo, float u_choice, vec2 u, INOUT(uint) rays) {
+    LightSample light;
+    if (!light_sample(s.position, u_choice, u, light)) return vec3(0.0f);
+    vec3 wi = to_local(frame, light.wi);
+    vec3 f = bsdf_eval(bsdf, wo, wi, TRANSPORT_RADIANCE) * abs(wi.z);
+    if (is_black(f)) return vec3(0.0f);
+    if (scene_occluded(s.position, s.error, s.ng, light.wi, light.distance, rays)) return vec3(0.0f);
+    float weight = 1.0f;
+    if (light.is_delta == 0u) weight = power_heuristic(light.pdf, bsdf_pdf(bsdf, wo, wi, TRANSPORT_RADIANCE));
+    return f * light.radiance * (weight / light.pdf);
+}
+
+// Radiance that arrives at the camera along the ray. The first hit's features go to `pixel`.
+FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, INOUT(Sampler) numbers, INOUT(FilmPixel) pixel, INOUT(uint) rays) {
+    vec3 origin = ray_origin;
+    vec3 direction = ray_direction;
+    vec3 radiance = vec3(0.0f);
+    vec3 throughput = vec3(1.0f);
+    vec3 previous = ray_origin;     // the vertex before, whence lights were sampled
+    float bsdf_density = 0.0f;      // pdf (solid angle) with which `direction` was sampled
+    float eta_scale = 1.0f;         // undoes the scaling of radiance on refraction: roulette must not see it
+    bool lights_were_sampled = false;
+    bool first = true;
+    int depth = 0;
+    uint passed = 0u;
+    for (;;) {
+        Surface s;
+        if (!intersect_scene(origin, direction, s, rays)) {
+            if (HAS(EFFECT_ENVIRONMENT)) {
+                vec3 emitted = environment_radiance(direction);
+                if (!is_black(emitted)) {
+                    float weight = lights_were_sampled ? power_heuristic(bsdf_density, environment_pdf(direction)) : 1.0f;
+                    radiance += throughput * emitted * weight;
+                }
+            }
+            break;
+        }
+        if (HAS(EFFECT_AREA_LIGHTS) && s.light != NONE) {
+            vec3 emitted = light_emission(s, -direction);
+            if (!is_black(emitted)) {
+                float weight = lights_were_sampled ? power_heuristic(bsdf_density, light_pdf(s, previous, direction)) : 1.0f;
+                radiance += throughput * emitted * weight;
+            }
+        }
+        if (HAS(EFFECT_INTERFACE) && is_interface(s)) {
+            origin = offset_origin(s.position, s.error, s.ng, direction);
+            if (++passed > MAX_PASSED_SURFACES) {
+                REPORT_UNFINISHED();
+                break;
+            }
+            continue;
+        }
+        Frame frame;
+        Bsdf bsdf = material_bsdf(s, -direction, frame);
+        if (first) {
+            first = false;
+            vec3 albedo = bsdf_albedo(bsdf);
+            pixel.albedo += vec4(albedo.x, albedo.y, albedo.z, 1.0f);
+            pixel.normal += vec4(s.ns.x, s.ns.y, s.ns.z, 0.0f);
+            pixel.squares.w += distance_of(s.position, ray_origin);
+        }
+        if (depth >= params[0].maxdepth) break;
+        numbers.dimension = PATH_CAMERA_DIMENSIONS + uint(depth) * PATH_VERTEX_DIMENSIONS;
+        depth += 1;
+
+        vec3 wo = to_local(frame, -direction);
+        float u_light = sample_1d(numbers);
+        float u_lobe = sample_1d(numbers);
+        vec2 u_light_point = sample_2d(numbers);
+        vec2 u_direction = sample_2d(numbers);
+        float u_roulette = sample_1d(numbers);
+        lights_were_sampled = !bsdf_is_specular(bsdf);
+        if (lights_were_sampled && scene[0].lights.x > 0u)
+            radiance += throughput * path_direct_light(s, frame, bsdf, wo, u_light, u_light_point, rays);
+
+        BsdfSample next;
+        if (!bsdf_sample(bsdf, wo, u_lobe, u_direction, TRANSPORT_RADIANCE, next)) break;
+        throughput *= next.f * (abs(next.wi.z) / next.pdf);
+        bsdf_density = next.pdf_is_proportional != 0u ? bsdf_pdf(bsdf, wo, next.wi, TRANSPORT_RADIANCE) : next.pdf;
+        if ((next.lobe & LOBE_SPECULAR) != 0u) lights_were_sampled = false;
+        if ((next.lobe & LOBE_TRANSMISSION) != 0u) eta_scale *= sqr(next.eta);
+        direction = to_world(frame, next.wi);
+        direction = unit(direction);
+        previous = s.position;
+        origin = offset_origin(s.position, s.error, s.ng, direction);
+
+        float survival = max_component(throughput) * eta_scale;
+        if (!(survival > 0.0f)) break;
+        if (depth > params[0].rrdepth && survival < 1.0f) {
+            if (u_roulette >= survival) break;
+            throughput = throughput / survival;
+        }
+    }
+    return radiance;
+}
+
+KERNEL(path) {
+    uvec4 pixels = window[0].pixels;
+    uvec4 range = window[0].samples;
+    uvec2 local = film_pixel_of(index, pixels);
+    uint place = local.y * pixels.z + local.x;
+    uint x = pixels.x + local.x;
+    uint y = pixels.y + local.y;
+    FilmPixel pixel = film[place];
+    uint rays = 0u;
+    for (uint i = 0u; i < range.y; ++i) {
+        uint pass = range.x + i;
+        Sampler numbers = sampler_begin(y * scene[0].camera.film.x + x, pass, range.z, range.w);
+        float weight;
+        vec2 offset = pixel_filter_sample(sample_2d(numbers), weight);
+        vec2 u_lens = vec2(0.5f);
+        if (HAS(EFFECT_DEPTH_OF_FIELD)) u_lens = sample_2d(numbers);
+        Ray ray = camera_ray(vec2(float(x) + 0.5f + offset.x, float(y) + 0.5f + offset.y), u_lens);
+        vec3 radiance = path_radiance(ray.origin, ray.direction, numbers, pixel, rays);
+        film_add(pixel, film_sensor(radiance), weight, pass);
+    }
+    pixel.counts.y += rays;
+    film[place] = pixel;
+}
