@@ -1,5 +1,5 @@
 // Plugins that live in shared objects of their own: what registers itself there joins what is built in. A plugin built
-// against other headers than this library's is refused before any of its code runs; see docs/plugins.md.
+// against other headers than this library's is refused before any of its code runs; see docs/plugin-guide.md.
 #pragma once
 
 #include <string>
