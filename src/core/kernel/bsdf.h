@@ -102,14 +102,17 @@ FN Bsdf bsdf_coat(float eta, vec2 alpha, float thickness, vec3 albedo, float g, 
     return b;
 }
 
-FN Bsdf bsdf_coated_diffuse(IN(Bsdf) coat, vec3 reflectance) {
+// flags: MATERIAL_EXACT_COAT.
+FN Bsdf bsdf_coated_diffuse(IN(Bsdf) coat, vec3 reflectance, uint flags) {
     Bsdf b = coat;
     b.kind = MATERIAL_COATED_DIFFUSE;
+    b.flags = flags;
     b.color0 = bounded_share(reflectance);
     return b;
 }
 
-// n + ik of the bare metal: under the coat both are relative to the coat's index.
+// n + ik of the bare metal: under the coat both are relative to the coat's index. flags: MATERIAL_EXACT_COAT and
+// MATERIAL_ENERGY_COMPENSATION.
 FN Bsdf bsdf_coated_conductor(IN(Bsdf) coat, vec3 n, vec3 k, vec2 alpha, uint flags) {
     Bsdf b = coat;
     b.kind = MATERIAL_COATED_CONDUCTOR;

@@ -13,7 +13,7 @@ CONST uint LOBE_BOTH_SIDES = 3u;  // reflection and transmission: an unrestricte
 // A material at a point: every parameter is resolved. Make one with the functions in bsdf.h, which bound the parameters.
 struct Bsdf {
     uint kind;        // MATERIAL_*, never MATERIAL_MIX
-    uint flags;       // MATERIAL_ENERGY_COMPENSATION
+    uint flags;       // MATERIAL_ENERGY_COMPENSATION, MATERIAL_EXACT_COAT
     vec3 color0;      // diffuse, diffuse transmission, coated diffuse: reflectance; conductors: n of n + ik
     vec3 color1;      // diffuse transmission: transmittance; conductors: k
     vec3 albedo;      // coats: single-scattering albedo of the medium between the layers

@@ -157,8 +157,8 @@ FN Bsdf material_bsdf(INOUT(Surface) s, vec3 wo, OUT(Frame) frame) {
         if (on_metal) coat_alpha = roughness_alpha(m.floats2.y, m.floats2.z, (flags & MATERIAL_REMAP_COAT) != 0u);
         Bsdf coat = bsdf_coat(m.floats.z, coat_alpha, m.floats2.x, vec3(m.color2.x, m.color2.y, m.color2.z), m.floats.w, m.extra.x,
                               m.extra.y);
-        if (on_metal) b = bsdf_coated_conductor(coat, color0, color1, alpha, flags & MATERIAL_ENERGY_COMPENSATION);
-        else b = bsdf_coated_diffuse(coat, color0);
+        if (on_metal) b = bsdf_coated_conductor(coat, color0, color1, alpha, flags);
+        else b = bsdf_coated_diffuse(coat, color0, flags);
     } else {
         b = bsdf_interface();
     }
