@@ -47,6 +47,7 @@ struct DeviceStatistics {
     double compile_s = 0;  // shaders
     size_t memory_bytes = 0, peak_memory_bytes = 0;
     std::map<std::string, double> kernel_s;  // seconds in each kernel, by its file's name
+    std::map<std::string, size_t> spirv_bytes; // size of each kernel's SPIR-V, by its file's name; empty on CPU backends
 };
 
 class Device {

@@ -182,5 +182,10 @@ const BackendRegistration cpu(
     [](const DeviceOptions& options) { return std::make_unique<CpuDevice>(CpuTracerKind::embree, options); },
     [] { return std::vector<DeviceInfo>{processor("cpu", "Embree " RTC_VERSION_STRING)}; });
 
+const BackendRegistration cpu_bvh2(
+    "cpu-bvh2", "the shaders' ray tracer as C++, for debugging and tests",
+    [](const DeviceOptions& options) { return std::make_unique<CpuDevice>(CpuTracerKind::bvh2, options); },
+    [] { return std::vector<DeviceInfo>{processor("cpu-bvh2", "BVH2")}; });
+
 }  // namespace
 }  // namespace lampyris

@@ -23,7 +23,9 @@ class CpuScene final : public DeviceScene {
 
  private:
     std::array<void*, kBufferCount> buffers_{};
-    std::unique_ptr<EmbreeScene> embree_;
+    struct OwnBvh;
+    std::unique_ptr<EmbreeScene> embree_;  // of backend cpu
+    std::unique_ptr<OwnBvh> bvh_;          // of backend cpu-bvh2
     CpuTracer tracer_;
     size_t memory_ = 0;
 };

@@ -46,8 +46,16 @@ struct InstanceRecord {
     uvec4 data;  // first geometry, number of geometries, root node of its BVH, 1 if the transform swaps handedness
 };
 
-// Binary BVH node that holds both children's boxes (64 bytes). A child is an inner node (index), or a leaf: the sign bit
-// and count << 24 | first primitive (count 1..7 below bit 31 ... 24).
+// Binary BVH node that holds both children's boxes (64 bytes). A child is an inner node (its index), or has the sign bit: a
+// leaf, count << 24 | first primitive, or with a count of 0 an instance (its index).
+CONST uint BVH_LEAF = 0x80000000u;
+CONST uint BVH_DEPTH = 40u;            // of a tree, at most, in a scene without instances; and what the stack must hold
+CONST uint BVH_DEPTH_INSTANCES = 31u;  // of each tree in a scene with instances (a mixed leaf adds up to 3 to the world's)
+// A primitive is three vec4: v0 | geometry, v1 | primitive, v2 | one of these kinds.
+CONST uint BVH_TRIANGLE = 0u;
+CONST uint BVH_QUADRIC = 1u;
+CONST uint BVH_BILINEAR = 2u;
+
 struct BvhNode {
     vec4 left_min;   // w: left child's bits
     vec4 left_max;   // w: right child's bits

@@ -1,0 +1,73 @@
+// A Vulkan instance, a device picked from it, one queue; and how errors are told.
+#pragma once
+
+#include "backends/vulkan/validation.h"
+#include "backends/vulkan/vulkan.h"
+#include "core/device.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace lampyris::vulkan {
+
+// An on/off/auto setting of `--set backend.KEY=VALUE`; throws InputError for anything else.
+enum class Switch { off, on, automatic };
+Switch read_switch(const DeviceOptions& options, const std::string& key, Switch otherwise);
+
+// What the chosen device can do, of what Lampyris uses.
+struct Capabilities {
+    bool is_cpu = false, is_integrated = false;
+    bool ray_query = false;
+    bool int64_atomics = false;
+    bool timestamps = false;
+    double timestamp_ns = 1;  // per tick
+    uint64_t max_storage_range = 0, max_allocation = 0;
+    uint32_t max_storage_buffers = 0, max_groups = 0;
+    bool has_host_visible_local = false;  // memory that both see: map it and copy nothing
+};
+
+class Context {
+ public:
+    // Throws MachineError where there is no Vulkan or no such device.
+    explicit Context(const DeviceOptions& options);
+
+    ValidationLog validation_log;  // before the instance, which writes to it until it is gone
+    vk::raii::Context loader;
+    vk::raii::Instance instance = nullptr;
+    vk::raii::DebugUtilsMessengerEXT messenger = nullptr;
+    vk::raii::PhysicalDevice physical = nullptr;
+    vk::raii::Device device = nullptr;
+    vk::raii::Queue queue = nullptr;
+    vk::raii::CommandPool command_pool = nullptr;
+    uint32_t queue_family = 0;
+    Capabilities can;
+    std::string name, driver;
+    bool validation = false;
+
+    // The index of a memory type of `allowed` with all of `wanted`, preferably with `liked`; throws MachineError where none.
+    uint32_t memory_type(uint32_t allowed, vk::MemoryPropertyFlags wanted, vk::MemoryPropertyFlags liked = {}) const;
+    // Throws MachineError with what the validation layers said since the last call, if anything.
+    void check_validation();
+    // Records with `record(command_buffer)`, submits, waits.
+    template <typename Record>
+    void submit(Record&& record) {
+        vk::raii::CommandBuffers buffers(device, {*command_pool, vk::CommandBufferLevel::ePrimary, 1});
+        buffers[0].begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+        record(buffers[0]);
+        buffers[0].end();
+        submit_and_wait(*buffers[0]);
+    }
+    void submit_and_wait(vk::CommandBuffer commands);
+
+ private:
+    vk::raii::Fence fence_ = nullptr;
+};
+
+// Every Vulkan device of this machine, in the order of the numbers that --device takes: GPUs before CPUs.
+std::vector<DeviceInfo> list_vulkan_devices();
+
+// A vk::Error as text for people: what it means and what may help.
+std::string explain(const vk::Error& error, const std::string& doing);
+
+}  // namespace lampyris::vulkan

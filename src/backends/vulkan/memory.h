@@ -1,0 +1,49 @@
+// Buffers: mapped where host and device see the same memory, staged otherwise.
+#pragma once
+
+#include "backends/vulkan/context.h"
+
+namespace lampyris::vulkan {
+
+// Bytes in use and their largest number, and the limit (0: none).
+struct MemoryAccount {
+    size_t used = 0, peak = 0;
+    uint64_t limit = 0;
+};
+
+struct BufferOptions {
+    bool staged = false;  // device-local memory that the host does not map
+    vk::BufferUsageFlags usage = vk::BufferUsageFlagBits::eStorageBuffer;
+    size_t alignment = 0;  // of the address; 0: whatever the device wants
+};
+
+class VulkanBuffer final : public Buffer {
+ public:
+    // Throws MachineError naming the buffer where there is no memory for it.
+    VulkanBuffer(std::shared_ptr<Context> context, std::shared_ptr<MemoryAccount> account, size_t bytes, std::string_view name, BufferOptions options);
+    ~VulkanBuffer() override;
+    VulkanBuffer(const VulkanBuffer&) = delete;
+    VulkanBuffer& operator=(const VulkanBuffer&) = delete;
+
+    size_t size() const override { return size_; }
+    void upload(const void* data, size_t bytes, size_t offset) override;
+    void download(void* data, size_t bytes, size_t offset) const override;
+    void fill_zero() override;
+
+    vk::Buffer handle() const { return *buffer_; }
+    vk::DeviceAddress address() const;  // for acceleration structures
+    void* mapped() const { return mapped_; }
+
+ private:
+    void check_range(size_t bytes, size_t offset) const;
+
+    std::shared_ptr<Context> context_;
+    std::shared_ptr<MemoryAccount> account_;
+    std::string name_;
+    size_t size_ = 0, allocated_ = 0;
+    vk::raii::DeviceMemory memory_ = nullptr;  // after the buffer would be freed before it
+    vk::raii::Buffer buffer_ = nullptr;
+    void* mapped_ = nullptr;
+};
+
+}  // namespace lampyris::vulkan

@@ -1,0 +1,28 @@
+// A scene on a Vulkan device: its buffers, and what its rays are traced with.
+#pragma once
+
+#include "backends/vulkan/kernel.h"
+
+namespace lampyris {
+struct Scene;
+}
+
+namespace lampyris::vulkan {
+
+class AccelerationStructures;
+
+class VulkanScene final : public DeviceScene {
+ public:
+    // With ray_query, acceleration structures of the device instead of the BVH2.
+    VulkanScene(std::shared_ptr<Context> context, std::shared_ptr<MemoryAccount> account, const Scene& scene, bool staged, bool ray_query,
+                const VulkanBuffer& unfinished);
+    ~VulkanScene() override;
+    const SceneBindings& bindings() const { return bindings_; }
+
+ private:
+    std::vector<std::unique_ptr<VulkanBuffer>> buffers_;
+    std::unique_ptr<AccelerationStructures> structures_;
+    SceneBindings bindings_;
+};
+
+}  // namespace lampyris::vulkan

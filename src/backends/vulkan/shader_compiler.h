@@ -1,0 +1,32 @@
+// Kernel text to SPIR-V: glslang, then forbid_contraction, then SPIRV-Tools' optimizer, then the cache on disk.
+#pragma once
+
+#include "backends/vulkan/shader_cache.h"
+#include "backends/vulkan/spirv.h"
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace lampyris::vulkan {
+
+struct ShaderOptions {
+    uint32_t effects = 0;     // the exact mask: code for other effects is compiled out
+    bool precise = true;      // forbid contraction
+    bool optimize = true;
+    bool ray_query = false;   // trace with VK_KHR_ray_query instead of the BVH in the shader
+    uint32_t local_size = 64;
+};
+
+struct CompiledShader {
+    Spirv spirv;
+    bool from_cache = false;
+};
+
+// Throws InputError with glslang's messages (file:line of the kernel's own files) where the kernel is not valid GLSL.
+CompiledShader compile_shader(std::string_view kernel_file, const ShaderOptions& options, const ShaderCache& cache);
+
+// The entry text that compile_shader hands to glslang: defines, and includes of the kernel and of core/kernel/entry.glsl.
+std::string shader_source(std::string_view kernel_file, const ShaderOptions& options);
+
+}  // namespace lampyris::vulkan

@@ -1,0 +1,125 @@
+#include "backends/vulkan/spirv.h"
+
+#include <glslang/SPIRV/spirv.hpp>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <tuple>
+
+namespace lampyris::vulkan {
+namespace {
+
+constexpr size_t kHeaderWords = 5;
+
+// Calls visit(opcode, words, count) for each instruction.
+template <typename Visit>
+void for_each_instruction(const Spirv& spirv, Visit&& visit) {
+    for (size_t at = kHeaderWords; at < spirv.size();) {
+        const uint32_t count = spirv[at] >> 16;
+        if (count == 0 || at + count > spirv.size()) return;  // not SPIR-V; the validator says so better
+        visit(static_cast<spv::Op>(spirv[at] & 0xffffu), &spirv[at], count);
+        at += count;
+    }
+}
+
+// Arithmetic to which the SPIR-V specification lets NoContraction apply; all have their result id in word 2.
+bool is_float_arithmetic(spv::Op op) {
+    switch (op) {
+        case spv::OpFNegate:
+        case spv::OpFAdd:
+        case spv::OpFSub:
+        case spv::OpFMul:
+        case spv::OpFDiv:
+        case spv::OpFRem:
+        case spv::OpFMod:
+        case spv::OpVectorTimesScalar:
+        case spv::OpMatrixTimesScalar:
+        case spv::OpVectorTimesMatrix:
+        case spv::OpMatrixTimesVector:
+        case spv::OpMatrixTimesMatrix:
+        case spv::OpOuterProduct:
+        case spv::OpDot: return true;
+        default: return false;
+    }
+}
+
+bool is_annotation(spv::Op op) {
+    return op == spv::OpDecorate || op == spv::OpMemberDecorate || op == spv::OpDecorationGroup || op == spv::OpGroupDecorate ||
+           op == spv::OpGroupMemberDecorate || op == spv::OpDecorateId || op == spv::OpDecorateString || op == spv::OpMemberDecorateString;
+}
+
+// Sections that come before the annotations in a module (SPIR-V specification, 2.4).
+bool precedes_annotations(spv::Op op) {
+    switch (op) {
+        case spv::OpCapability:
+        case spv::OpExtension:
+        case spv::OpExtInstImport:
+        case spv::OpMemoryModel:
+        case spv::OpEntryPoint:
+        case spv::OpExecutionMode:
+        case spv::OpExecutionModeId:
+        case spv::OpString:
+        case spv::OpSourceExtension:
+        case spv::OpSource:
+        case spv::OpSourceContinued:
+        case spv::OpName:
+        case spv::OpMemberName:
+        case spv::OpModuleProcessed: return true;
+        default: return false;
+    }
+}
+
+}  // namespace
+
+Spirv forbid_contraction(const Spirv& spirv) {
+    std::set<uint32_t> decorated;
+    std::vector<uint32_t> results;
+    for_each_instruction(spirv, [&](spv::Op op, const uint32_t* words, uint32_t count) {
+        if (op == spv::OpDecorate && count == 3 && words[2] == spv::DecorationNoContraction) decorated.insert(words[1]);
+        if (is_float_arithmetic(op)) results.push_back(words[2]);
+    });
+    Spirv out(spirv.begin(), spirv.begin() + std::min(kHeaderWords, spirv.size()));
+    out.reserve(spirv.size() + 3 * results.size());
+    bool inserted = false;
+    for_each_instruction(spirv, [&](spv::Op op, const uint32_t* words, uint32_t count) {
+        if (!inserted && !precedes_annotations(op) && !is_annotation(op)) {
+            for (const uint32_t id : results) {
+                if (decorated.count(id)) continue;
+                out.insert(out.end(), {uint32_t(3) << 16 | spv::OpDecorate, id, spv::DecorationNoContraction});
+            }
+            inserted = true;
+        }
+        out.insert(out.end(), words, words + count);
+    });
+    return out;
+}
+
+std::vector<ShaderBinding> used_bindings(const Spirv& spirv) {
+    std::map<uint32_t, uint32_t> sets, bindings;    // by variable
+    std::map<uint32_t, uint32_t> pointees;          // pointer type -> type
+    std::set<uint32_t> structures, used;            // acceleration structure types; ids that functions mention
+    std::map<uint32_t, uint32_t> variables;         // variable -> pointer type
+    bool in_function = false;
+    for_each_instruction(spirv, [&](spv::Op op, const uint32_t* words, uint32_t count) {
+        if (op == spv::OpDecorate && count == 4 && words[2] == spv::DecorationDescriptorSet) sets[words[1]] = words[3];
+        if (op == spv::OpDecorate && count == 4 && words[2] == spv::DecorationBinding) bindings[words[1]] = words[3];
+        if (op == spv::OpTypePointer) pointees[words[1]] = words[3];
+        if (op == spv::OpTypeAccelerationStructureKHR) structures.insert(words[1]);
+        if (op == spv::OpFunction) in_function = true;
+        if (op == spv::OpVariable && !in_function) variables[words[2]] = words[1];
+        // A literal that happens to equal an id only makes a buffer count as used, which does no harm.
+        if (in_function) used.insert(words + 1, words + count);
+    });
+    std::vector<ShaderBinding> result;
+    for (const auto& [variable, type] : variables) {
+        if (!bindings.count(variable) || !used.count(variable)) continue;
+        result.push_back({sets[variable], bindings[variable], structures.count(pointees[type]) != 0});
+    }
+    std::sort(result.begin(), result.end(), [](const ShaderBinding& a, const ShaderBinding& b) {
+        return std::tie(a.set, a.binding) < std::tie(b.set, b.binding);
+    });
+    return result;
+}
+
+}  // namespace lampyris::vulkan

@@ -1,0 +1,26 @@
+// The BVH2 that kernels walk themselves (core/kernel/trace_bvh2.h): on Vulkan, and on the CPU as backend cpu-bvh2.
+#pragma once
+
+#include "core/kernel_types.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace lampyris {
+
+struct Scene;
+
+struct Bvh2 {
+    std::vector<kernel::BvhNode> nodes;
+    std::vector<kernel::vec4> triangles;  // three per primitive, in the order of the leaves; see BVH_TRIANGLE in layout.h
+    // What belongs into the scene's records: InstanceRecord::data.z of each instance, SceneRecord::counts.z is the first.
+    std::vector<uint32_t> roots;
+    size_t bytes() const { return nodes.size() * sizeof(kernel::BvhNode) + triangles.size() * sizeof(kernel::vec4); }
+};
+
+// Builds with Embree's builder (binned SAH, leaves of up to four): one tree per geometry set; instances are leaves of the
+// world's tree. Primitives with coordinates that are not finite are left out, as Embree does.
+// Throws MachineError where there is no memory, or where there are more primitives than a leaf can address.
+Bvh2 build_bvh2(const Scene& scene);
+
+}  // namespace lampyris

@@ -1,0 +1,8 @@
+// A kernel's entry point on Vulkan; the end of every shader that backends/vulkan/shader_compiler.cpp puts together.
+layout(local_size_x = KERNEL_LOCAL_SIZE) in;
+layout(push_constant) uniform KernelRange { uint begin; uint count; } kernel_range;
+
+void main() {
+    uint place = gl_GlobalInvocationID.x;
+    if (place < kernel_range.count) kernel_main(kernel_range.begin + place);
+}
