@@ -21,7 +21,7 @@ namespace lampyris {
 namespace {
 
 namespace fs = std::filesystem;
-using Bytes = std::vector<std::byte>;
+using Bytes = std::vector<unsigned char>;
 
 constexpr float kLargestHalf = 65504.0f;
 
@@ -45,15 +45,14 @@ void add_metadata(OIIO::ImageSpec& spec, const std::map<std::string, std::string
 
 Bytes encode(const char* format, const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const void* pixels) {
     const std::string name = std::string("memory.") + format;
-    std::vector<unsigned char> buffer;
+    Bytes buffer;
     OIIO::Filesystem::IOVecOutput memory(buffer);
     const auto output = OIIO::ImageOutput::create(name);
     if (!output) throw MachineError(fmt::format("OpenImageIO cannot write {}: {}", format, OIIO::geterror()));
     if (!output->set_ioproxy(&memory) || !output->open(name, spec) || !output->write_image(type, pixels) ||
         !output->close())
         throw MachineError(fmt::format("OpenImageIO cannot write {}: {}", format, output->geterror()));
-    const auto bytes = std::as_bytes(std::span(buffer));
-    return Bytes(bytes.begin(), bytes.end());
+    return buffer;
 }
 
 // What keeps its meaning in 11 bits of precision and a range of 65504.
@@ -111,7 +110,7 @@ Bytes encode_png(int width, int height, const std::vector<uint8_t>& rgb,
         saved =
             (fs::temp_directory_path() / fmt::format("lampyris-{}-{}", ::getpid(), fs::path(path).filename().string()))
                 .string();
-        write_file_atomically(saved, bytes);
+        write_file_atomically(saved, std::as_bytes(std::span(bytes)));
     } catch (const std::exception&) {
         throw MachineError(
             fmt::format("{} (and it could not be saved in the folder for temporary files either)", failure.what()));
@@ -121,7 +120,7 @@ Bytes encode_png(int width, int height, const std::vector<uint8_t>& rgb,
 
 void write_or_rescue(const std::string& path, const Bytes& bytes) {
     try {
-        write_file_atomically(path, bytes);
+        write_file_atomically(path, std::as_bytes(std::span(bytes)));
     } catch (const MachineError& failure) {
         rescue(path, bytes, failure);
     }

@@ -15,14 +15,14 @@ namespace lampyris {
 
 static_assert(std::endian::native == std::endian::little, "the writer copies floats as they lie in memory");
 
-std::vector<std::byte> encode_pfm(const Image& image) {
+std::vector<unsigned char> encode_pfm(const Image& image) {
     if (image.channels != 1 && image.channels != 3)
         throw InputError(fmt::format("PFM holds one or three channels, not {}", image.channels));
     // The sign of the scale says little-endian.
     const std::string header =
         fmt::format("{}\n{} {}\n-1.0\n", image.channels == 3 ? "PF" : "Pf", image.width, image.height);
     const size_t row_bytes = size_t(image.width) * size_t(image.channels) * sizeof(float);
-    std::vector<std::byte> bytes(header.size() + row_bytes * size_t(image.height));
+    std::vector<unsigned char> bytes(header.size() + row_bytes * size_t(image.height));
     std::memcpy(bytes.data(), header.data(), header.size());
     for (int y = 0; y < image.height; ++y)
         std::memcpy(bytes.data() + header.size() + row_bytes * size_t(image.height - 1 - y),

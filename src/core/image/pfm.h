@@ -13,7 +13,7 @@ namespace lampyris {
 
 // `image` must have one or three channels, whose names are lost. Little-endian, scale 1. Every float survives, bit by
 // bit.
-std::vector<std::byte> encode_pfm(const Image& image);
+std::vector<unsigned char> encode_pfm(const Image& image);
 // Either byte order. The numbers are multiplied by the header's scale, as pbrt does. Throws InputError that says what
 // is wrong with the file, without the file's name.
 Image decode_pfm(std::span<const std::byte> bytes);

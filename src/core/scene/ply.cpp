@@ -1,0 +1,391 @@
+#include "core/scene/ply.h"
+
+#include "core/error.h"
+#include "core/scene/file_text.h"
+#include "core/scene/number.h"
+#include "core/scene/ply_header.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+namespace lampyris {
+namespace {
+
+template <typename T>
+T load(const char* p, bool swap) {
+    std::array<char, sizeof(T)> raw;
+    std::memcpy(raw.data(), p, sizeof(T));
+    if (swap) std::reverse(raw.begin(), raw.end());
+    return std::bit_cast<T>(raw);
+}
+
+// Every PLY type fits into a double exactly.
+double load_as_double(const char* p, PlyType type, bool swap) {
+    switch (type) {
+        case PlyType::kInt8: return load<int8_t>(p, swap);
+        case PlyType::kUint8: return load<uint8_t>(p, swap);
+        case PlyType::kInt16: return load<int16_t>(p, swap);
+        case PlyType::kUint16: return load<uint16_t>(p, swap);
+        case PlyType::kInt32: return load<int32_t>(p, swap);
+        case PlyType::kUint32: return load<uint32_t>(p, swap);
+        case PlyType::kFloat32: return load<float>(p, swap);
+        case PlyType::kFloat64: return load<double>(p, swap);
+    }
+    return 0.0;
+}
+
+// Where the scalar properties of a vertex go: up to three consecutive components of an array.
+struct Attribute {
+    std::vector<float>* values;
+    size_t components;
+    std::array<size_t, 3> property;  // indices into the element's properties
+};
+
+class PlyReader {
+ public:
+    PlyReader(const std::string& name, std::string_view bytes)
+        : name_(name), bytes_(bytes), header_(parse_ply_header(name, bytes)), p_(bytes.data() + header_.body),
+          end_(bytes.data() + bytes.size()), ascii_(header_.format == PlyFormat::kAscii),
+          swap_((header_.format == PlyFormat::kBigEndian) != (std::endian::native == std::endian::big)) {}
+
+    PlyMesh read() {
+        bool has_vertices = false, has_faces = false;
+        for (const PlyElement& element : header_.elements) {
+            has_vertices = has_vertices || element.name == "vertex";
+            has_faces = has_faces || element.name == "face";
+        }
+        if (!has_vertices || !has_faces)
+            fail_in_header(header_.body, std::string("the file has no element \"") + (has_vertices ? "face" : "vertex") + "\"");
+        for (const PlyElement& element : header_.elements) {
+            check_size(element);
+            if (element.name == "vertex")
+                read_vertices(element);
+            else if (element.name == "face")
+                read_faces(element);
+            else
+                skip(element);
+        }
+        check_indices(mesh_.triangles, 3, "triangle");
+        check_indices(mesh_.quads, 4, "quad");
+        mesh_.face_indices.insert(mesh_.face_indices.end(), quad_face_indices_.begin(), quad_face_indices_.end());
+        return std::move(mesh_);
+    }
+
+ private:
+    [[noreturn]] void fail_in_header(size_t offset, const std::string& message, const std::string& hint = {}) const {
+        fail_at_text(name_, bytes_, offset, message, hint);
+    }
+    [[noreturn]] void fail(const char* place, const std::string& message) const {
+        const auto offset = static_cast<size_t>(place - bytes_.data());
+        if (ascii_) fail_at_text(name_, bytes_, offset, message);
+        throw InputError(name_ + ": error: " + message + " (at byte " + std::to_string(offset) + ")");
+    }
+    [[noreturn]] void fail_truncated(const PlyElement& element) const {
+        fail(end_, "the file ends before the " + std::to_string(element.count) + " elements \"" + shown(element.name) +
+                       "\" that its header promises");
+    }
+
+    // Against a header that promises more than the file can hold: before anything is allocated for it.
+    void check_size(const PlyElement& element) const {
+        uint64_t least = 0;  // bytes of one row
+        for (const PlyProperty& property : element.properties)
+            least += ascii_ ? 2 : size_of(property.is_list ? property.count_type : property.type);
+        const auto left = static_cast<uint64_t>(end_ - p_) + (ascii_ ? 1 : 0);  // the last value needs no blank after it
+        if (least > 0 && element.count > left / least) fail_truncated(element);
+    }
+
+    size_t stride_of(const PlyElement& element) const {
+        size_t stride = 0;
+        for (const PlyProperty& property : element.properties) {
+            if (property.is_list) return 0;
+            stride += size_of(property.type);
+        }
+        return ascii_ ? 0 : stride;
+    }
+
+    // The next value, of whatever format.
+    double read_value(const PlyElement& element, PlyType type) {
+        if (!ascii_) {
+            const size_t size = size_of(type);
+            if (static_cast<size_t>(end_ - p_) < size) fail_truncated(element);
+            const double value = load_as_double(p_, type, swap_);
+            p_ += size;
+            return value;
+        }
+        while (p_ != end_ && (*p_ == ' ' || *p_ == '\n' || *p_ == '\r' || *p_ == '\t')) ++p_;
+        if (p_ == end_) fail_truncated(element);
+        double value = 0.0;
+        NumberResult result{};
+        if (type == PlyType::kFloat32) {
+            float narrow = 0.0f;
+            result = parse_float(p_, end_, narrow);
+            value = narrow;
+        } else {
+            result = parse_double(p_, end_, value);
+        }
+        if (result.status == NumberStatus::kNotANumber)
+            fail(p_, "expected a number, found \"" + shown({p_, static_cast<size_t>(std::max(result.end - p_, ptrdiff_t(1)))}) + "\"");
+        if (result.status == NumberStatus::kOutOfRange) fail(p_, "number out of range");
+        p_ = result.end;
+        return value;
+    }
+
+    int64_t read_integer(const PlyElement& element, PlyType type) {
+        const char* place = p_;
+        const double value = read_value(element, type);
+        if (value != std::floor(value) || std::abs(value) > 4294967295.0) fail(place, "expected a 32-bit integer");
+        return static_cast<int64_t>(value);
+    }
+
+    uint64_t read_count(const PlyElement& element, const PlyProperty& property) {
+        const char* place = p_;
+        const int64_t count = read_integer(element, property.count_type);
+        if (count < 0) fail(place, "a list of \"" + shown(element.name) + "\" has a negative length");
+        const uint64_t least = ascii_ ? 2 : size_of(property.type);
+        if (static_cast<uint64_t>(count) > (static_cast<uint64_t>(end_ - p_) + 1) / least) fail_truncated(element);
+        return static_cast<uint64_t>(count);
+    }
+
+    void skip_values(const PlyElement& element, PlyType type, uint64_t count) {
+        if (ascii_) {
+            for (uint64_t i = 0; i < count; ++i) read_value(element, type);
+        } else {
+            if (count > static_cast<uint64_t>(end_ - p_) / size_of(type)) fail_truncated(element);
+            p_ += count * size_of(type);
+        }
+    }
+
+    void skip(const PlyElement& element) {
+        if (element.properties.empty()) return;
+        if (const size_t stride = stride_of(element)) {
+            p_ += element.count * stride;  // check_size saw that it fits
+            return;
+        }
+        for (uint64_t row = 0; row < element.count; ++row)
+            for (const PlyProperty& property : element.properties)
+                skip_values(element, property.type, property.is_list ? read_count(element, property) : 1);
+    }
+
+    static constexpr size_t kAbsent = std::numeric_limits<size_t>::max();
+    static size_t scalar(const PlyElement& element, std::string_view name) {
+        for (size_t i = 0; i < element.properties.size(); ++i)
+            if (element.properties[i].name == name && !element.properties[i].is_list) return i;
+        return kAbsent;
+    }
+
+    std::vector<Attribute> attributes_of(const PlyElement& element) {
+        std::vector<Attribute> attributes;
+        attributes.push_back({&mesh_.positions, 3, {scalar(element, "x"), scalar(element, "y"), scalar(element, "z")}});
+        for (size_t property : attributes[0].property)
+            if (property == kAbsent) fail_in_header(element.offset, "vertices need the properties x, y and z");
+        const std::array<size_t, 3> normal{scalar(element, "nx"), scalar(element, "ny"), scalar(element, "nz")};
+        if (normal[0] != kAbsent && normal[1] != kAbsent && normal[2] != kAbsent)
+            attributes.push_back({&mesh_.normals, 3, normal});
+        static constexpr std::pair<const char*, const char*> kUvNames[] = {
+            {"u", "v"}, {"s", "t"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}};
+        for (const auto& [u, v] : kUvNames) {
+            const std::array<size_t, 3> uv{scalar(element, u), scalar(element, v), kAbsent};
+            if (uv[0] == kAbsent || uv[1] == kAbsent) continue;
+            attributes.push_back({&mesh_.uvs, 2, uv});
+            break;
+        }
+        return attributes;
+    }
+
+    void read_vertices(const PlyElement& element) {
+        if (element.count > std::numeric_limits<uint32_t>::max())
+            fail_in_header(element.offset, "more than 2^32 - 1 vertices");
+        const std::vector<Attribute> attributes = attributes_of(element);
+        for (const Attribute& attribute : attributes) attribute.values->resize(element.count * attribute.components);
+        const char* start = p_;
+        if (stride_of(element) > 0)
+            read_packed_vertices(element, attributes);
+        else
+            read_mixed_vertices(element, attributes);
+        for (const Attribute& attribute : attributes) {
+            const auto& values = *attribute.values;
+            const auto bad = std::find_if(values.begin(), values.end(), [](float v) { return !std::isfinite(v); });
+            if (bad == values.end()) continue;
+            const auto vertex = static_cast<size_t>(bad - values.begin()) / attribute.components;
+            const std::string& property =
+                element.properties[attribute.property[static_cast<size_t>(bad - values.begin()) % attribute.components]].name;
+            fail(start, "property \"" + property + "\" of vertex " + std::to_string(vertex) + " is not a finite float");
+        }
+    }
+
+    // Rows of a fixed size: each attribute by itself, in whole floats where they lie side by side.
+    void read_packed_vertices(const PlyElement& element, const std::vector<Attribute>& attributes) {
+        const size_t stride = stride_of(element);
+        std::vector<size_t> offsets(element.properties.size());
+        for (size_t i = 1; i < offsets.size(); ++i) offsets[i] = offsets[i - 1] + size_of(element.properties[i - 1].type);
+        for (const Attribute& attribute : attributes) {
+            bool plain = !swap_;
+            for (size_t c = 0; c < attribute.components; ++c) {
+                const size_t property = attribute.property[c];
+                plain = plain && element.properties[property].type == PlyType::kFloat32 &&
+                        offsets[property] == offsets[attribute.property[0]] + c * sizeof(float);
+            }
+            float* out = attribute.values->data();
+            if (plain) {
+                const char* row = p_ + offsets[attribute.property[0]];
+                const size_t bytes = attribute.components * sizeof(float);
+                for (uint64_t i = 0; i < element.count; ++i, row += stride, out += attribute.components)
+                    std::memcpy(out, row, bytes);
+                continue;
+            }
+            for (uint64_t i = 0; i < element.count; ++i)
+                for (size_t c = 0; c < attribute.components; ++c) {
+                    const size_t property = attribute.property[c];
+                    *out++ = to_float(
+                        load_as_double(p_ + i * stride + offsets[property], element.properties[property].type, swap_));
+                }
+        }
+        p_ += element.count * stride;
+    }
+
+    // A double beyond float's range becomes infinite, which is reported; converting it as such would be undefined.
+    static float to_float(double value) {
+        constexpr double kMax = std::numeric_limits<float>::max();
+        if (value > kMax || value < -kMax) return std::numeric_limits<float>::infinity();
+        return static_cast<float>(value);
+    }
+
+    void read_mixed_vertices(const PlyElement& element, const std::vector<Attribute>& attributes) {
+        std::vector<std::pair<const Attribute*, size_t>> targets(element.properties.size(), {nullptr, 0});
+        for (const Attribute& attribute : attributes)
+            for (size_t c = 0; c < attribute.components; ++c) targets[attribute.property[c]] = {&attribute, c};
+        for (uint64_t row = 0; row < element.count; ++row)
+            for (size_t i = 0; i < element.properties.size(); ++i) {
+                const PlyProperty& property = element.properties[i];
+                const auto [attribute, component] = targets[i];
+                if (attribute)
+                    (*attribute->values)[row * attribute->components + component] = to_float(read_value(element, property.type));
+                else
+                    skip_values(element, property.type, property.is_list ? read_count(element, property) : 1);
+            }
+    }
+
+    void read_faces(const PlyElement& element) {
+        size_t list = kAbsent, face_index = kAbsent;
+        for (size_t i = 0; i < element.properties.size(); ++i) {
+            const PlyProperty& property = element.properties[i];
+            if (property.is_list && (property.name == "vertex_indices" || property.name == "vertex_index")) {
+                if (list != kAbsent) fail_in_header(element.offset, "faces have both vertex_indices and vertex_index");
+                if (!is_integer(property.type)) fail_in_header(element.offset, "vertex indices are integers");
+                list = i;
+            }
+            if (!property.is_list && property.name == "face_indices" && is_integer(property.type)) face_index = i;
+        }
+        if (list == kAbsent) fail_in_header(element.offset, "faces need the property list vertex_indices");
+        if (element.count > std::numeric_limits<uint32_t>::max()) fail_in_header(element.offset, "more than 2^32 - 1 faces");
+        const PlyProperty& vertices = element.properties[list];
+        const bool usual = !ascii_ && !swap_ && element.properties.size() == 1 && size_of(vertices.count_type) == 1 &&
+                           size_of(vertices.type) == sizeof(uint32_t);
+        if (usual)
+            read_usual_faces(element);
+        else
+            read_mixed_faces(element, list, face_index);
+    }
+
+    void add_face(const std::array<uint32_t, 4>& v, uint64_t count) {
+        if (count == 3)
+            mesh_.triangles.insert(mesh_.triangles.end(), {v[0], v[1], v[2]});
+        else if (count == 4)
+            mesh_.quads.insert(mesh_.quads.end(), {v[0], v[1], v[3], v[2]});
+        else
+            ++mesh_.skipped_faces;
+    }
+
+    // One byte of count and that many 32-bit indices: what nearly every binary file has.
+    void read_usual_faces(const PlyElement& element) {
+        if (p_ != end_ && *p_ == 3) mesh_.triangles.reserve(3 * std::min<uint64_t>(element.count, (end_ - p_) / 13));
+        if (p_ != end_ && *p_ == 4) mesh_.quads.reserve(4 * std::min<uint64_t>(element.count, (end_ - p_) / 17));
+        const bool is_signed = element.properties[0].count_type == PlyType::kInt8;
+        for (uint64_t face = 0; face < element.count; ++face) {
+            if (p_ == end_) fail_truncated(element);
+            const auto count = static_cast<uint8_t>(*p_);
+            if (is_signed && count > 127) fail(p_, "a list of \"face\" has a negative length");
+            if (static_cast<size_t>(end_ - p_) < 1 + count * sizeof(uint32_t)) fail_truncated(element);
+            std::array<uint32_t, 4> v{};
+            std::memcpy(v.data(), p_ + 1, sizeof(uint32_t) * std::min<size_t>(count, 4));
+            add_face(v, count);
+            p_ += 1 + count * sizeof(uint32_t);
+        }
+    }
+
+    void read_mixed_faces(const PlyElement& element, size_t list, size_t face_index) {
+        for (uint64_t face = 0; face < element.count; ++face) {
+            std::array<uint32_t, 4> v{};
+            uint64_t vertex_count = 0;
+            int32_t index = 0;
+            for (size_t i = 0; i < element.properties.size(); ++i) {
+                const PlyProperty& property = element.properties[i];
+                if (i == list) {
+                    vertex_count = read_count(element, property);
+                    const uint64_t kept = std::min<uint64_t>(vertex_count, v.size());
+                    for (uint64_t k = 0; k < kept; ++k) v[k] = read_index(element, property.type);
+                    skip_values(element, property.type, vertex_count - kept);
+                } else if (i == face_index) {
+                    index = static_cast<int32_t>(static_cast<uint32_t>(read_integer(element, property.type)));
+                } else {
+                    skip_values(element, property.type, property.is_list ? read_count(element, property) : 1);
+                }
+            }
+            add_face(v, vertex_count);
+            if (face_index == kAbsent) continue;
+            if (vertex_count == 3) mesh_.face_indices.push_back(index);
+            if (vertex_count == 4) quad_face_indices_.push_back(index);
+        }
+    }
+
+    uint32_t read_index(const PlyElement& element, PlyType type) {
+        const char* place = p_;
+        const int64_t index = read_integer(element, type);
+        if (index < 0) fail(place, "a face has the negative vertex index " + std::to_string(index));
+        return static_cast<uint32_t>(index);
+    }
+
+    // Faces may come before vertices in the file, so this is done at the end. A negative index counts as a large one here.
+    void check_indices(const std::vector<uint32_t>& indices, size_t per_face, const char* what) const {
+        const size_t vertex_count = mesh_.positions.size() / 3;
+        uint32_t largest = 0;
+        for (uint32_t index : indices) largest = std::max(largest, index);
+        if (indices.empty() || largest < vertex_count) return;
+        const auto bad = std::find_if(indices.begin(), indices.end(), [&](uint32_t index) { return index >= vertex_count; });
+        throw InputError(name_ + ": error: " + what + " " +
+                         std::to_string(static_cast<size_t>(bad - indices.begin()) / per_face) + " has the vertex index " +
+                         std::to_string(static_cast<int32_t>(*bad)) + ", but there are " + std::to_string(vertex_count) +
+                         " vertices");
+    }
+
+    const std::string& name_;
+    std::string_view bytes_;
+    PlyHeader header_;
+    const char *p_, *end_;
+    bool ascii_, swap_;
+    PlyMesh mesh_;
+    std::vector<int32_t> quad_face_indices_;
+};
+
+}  // namespace
+
+PlyMesh read_ply_bytes(const std::string& name, std::string_view bytes) {
+    if (!is_gzip(bytes)) return PlyReader(name, bytes).read();
+    std::string inflated, why;
+    if (!inflate_gzip(bytes, inflated, why)) throw InputError(name + ": error: " + why);
+    return PlyReader(name, inflated).read();
+}
+
+PlyMesh read_ply(const std::string& path) {
+    std::string why;
+    const auto file = FileText::open(path, why);
+    if (!file) throw InputError(path + ": error: the mesh cannot be read: " + why);
+    return PlyReader(path, file->text()).read();
+}
+
+}  // namespace lampyris
