@@ -46,7 +46,7 @@ FN void patch_candidate(vec3 a00, vec3 a10, vec3 a01, vec3 a11, vec3 d, float u,
     vec3 n = cross3(d, along);
     float n2 = length_squared(n);
     if (!(n2 > 0.0f)) return;
-    vec3 m = cross3(from, n);
+    vec3 m = cross3(n, from);
     float v = dot3(m, d) / n2;
     float t_here = dot3(m, along) / n2;
     if (!(v >= -PATCH_EDGE && v <= 1.0f + PATCH_EDGE)) return;

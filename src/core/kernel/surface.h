@@ -35,6 +35,27 @@ struct Surface {
     uint light;     // the area light that this primitive is, or NONE
 };
 
+// No surface, but no indeterminate member either.
+FN Surface no_surface() {
+    Surface s;
+    s.position = vec3(0.0f);
+    s.error = vec3(0.0f);
+    s.ng = vec3(0.0f);
+    s.ns = vec3(0.0f);
+    s.dpdu = vec3(0.0f);
+    s.dpdv = vec3(0.0f);
+    s.dndu = vec3(0.0f);
+    s.dndv = vec3(0.0f);
+    s.uv = vec2(0.0f);
+    s.distance = 0.0f;
+    s.instance = 0u;
+    s.geometry = 0u;
+    s.primitive = 0u;
+    s.material = 0u;
+    s.light = NONE;
+    return s;
+}
+
 // Radiance flows against the path (from the camera), importance along it (photons): refraction scales only the former.
 CONST uint TRANSPORT_RADIANCE = 0u;
 CONST uint TRANSPORT_IMPORTANCE = 1u;
