@@ -1,0 +1,111 @@
+// Asks scattering functions, for tests: samples them, or evaluates them at given directions.
+#include "core/kernel/prelude.h"
+#ifndef __cplusplus
+#include "core/kernel/effects.h"
+#include "core/kernel/layout.h"
+#endif
+#include "core/kernel/math.h"
+#include "core/kernel/surface.h"
+// GLSL wants this order.
+// clang-format off
+#include "core/kernel/random.h"
+#include "core/kernel/bsdf.h"
+// clang-format on
+
+CONST uint PROBE_SAMPLE =
+    0u;  // results[4 i ...]: wi, pdf; f, eta; eval's f and pdf at wi; lobe, found, pdf_is_proportional
+CONST uint PROBE_EVAL = 1u;          // inputs[2 i ...]: wo, wi; results[i]: f, pdf
+CONST uint PROBE_EVAL_AT_WO = 2u;    // inputs[i]: wi
+CONST uint PROBE_EVAL_UNIFORM = 3u;  // results[4 i ...]: a uniform direction wi, pdf; f; -; -
+CONST uint PROBE_EVERYTHING =
+    4u;  // inputs[4 i ...]: wo, uc; wi, transport; u; -: samples and evaluates; results as PROBE_SAMPLE
+CONST uint PROBE_PROPERTIES = 5u;  // results[i]: albedo, specular
+
+struct BsdfProbe {
+    uvec4 what;  // operation, seed, transport, stride: index i asks probes[i / stride]
+    uvec4 kind;  // kind, flags, max_depth, samples
+    vec4 color0;
+    vec4 color1;
+    vec4 albedo;
+    vec4 alpha;  // x, y; of the base: z, w
+    vec4 coat;   // eta, thickness, g
+    vec4 wo;
+};
+
+BUFFER_RO(0, BsdfProbe, probes)
+BUFFER_RO(1, vec4, inputs)
+BUFFER_RW(2, vec4, results)
+
+FN Bsdf probed_bsdf(IN(BsdfProbe) p) {
+    vec3 color0 = vec3(p.color0);
+    vec3 color1 = vec3(p.color1);
+    vec2 alpha = vec2(p.alpha.x, p.alpha.y);
+    vec2 base = vec2(p.alpha.z, p.alpha.w);
+    Bsdf coat = bsdf_coat(p.coat.x, alpha, p.coat.y, vec3(p.albedo), p.coat.z, p.kind.z, p.kind.w);
+    if (p.kind.x == MATERIAL_DIFFUSE) return bsdf_diffuse(color0);
+    if (p.kind.x == MATERIAL_DIFFUSE_TRANSMISSION) return bsdf_diffuse_transmission(color0, color1);
+    if (p.kind.x == MATERIAL_CONDUCTOR) return bsdf_conductor(color0, color1, alpha, p.kind.y);
+    if (p.kind.x == MATERIAL_DIELECTRIC) return bsdf_dielectric(p.coat.x, alpha);
+    if (p.kind.x == MATERIAL_THIN_DIELECTRIC) return bsdf_thin_dielectric(p.coat.x);
+    if (p.kind.x == MATERIAL_COATED_DIFFUSE) return bsdf_coated_diffuse(coat, color0, p.kind.y);
+    if (p.kind.x == MATERIAL_COATED_CONDUCTOR) return bsdf_coated_conductor(coat, color0, color1, base, p.kind.y);
+    return bsdf_interface();
+}
+
+KERNEL(bsdf_probe) {
+    BsdfProbe p = probes[index / probes[0].what.w];
+    Bsdf b = probed_bsdf(p);
+    uint operation = p.what.x;
+    uint transport = p.what.z;
+    vec3 wo = vec3(p.wo);
+    vec3 wi = vec3(0.0f, 0.0f, 1.0f);
+    float pdf = 0.0f;
+    if (operation == PROBE_PROPERTIES) {
+        results[index] = vec4(bsdf_albedo(b), bsdf_is_specular(b) ? 1.0f : 0.0f);
+        return;
+    }
+    if (operation == PROBE_EVAL || operation == PROBE_EVAL_AT_WO) {
+        if (operation == PROBE_EVAL) {
+            wo = vec3(inputs[2u * index]);
+            wi = vec3(inputs[2u * index + 1u]);
+        } else {
+            wi = vec3(inputs[index]);
+        }
+        vec3 f = bsdf_eval_pdf(b, wo, wi, transport, pdf);
+        results[index] = vec4(f, pdf);
+        return;
+    }
+    Rng rng = rng_begin(p.what.y, index);
+    float uc = rng_float(rng);
+    vec2 u;
+    u.x = rng_float(rng);
+    u.y = rng_float(rng);
+    BsdfSample s = no_bsdf_sample();
+    uint found = 0u;
+    if (operation == PROBE_EVAL_UNIFORM) {
+        s.wi = sample_uniform_sphere(u);
+        s.pdf = pdf_uniform_sphere();
+        vec3 value = bsdf_eval(b, wo, s.wi, transport);
+        results[4u * index] = vec4(s.wi, s.pdf);
+        results[4u * index + 1u] = vec4(value, 1.0f);
+        return;
+    } else {
+        if (operation == PROBE_EVERYTHING) {
+            wo = vec3(inputs[4u * index]);
+            uc = inputs[4u * index].w;
+            u = vec2(inputs[4u * index + 2u].x, inputs[4u * index + 2u].y);
+            wi = vec3(inputs[4u * index + 1u]);
+            transport = uint(inputs[4u * index + 1u].w);
+        }
+        if (bsdf_sample(b, wo, uc, u, transport, s)) {
+            found = 1u;
+            if (operation == PROBE_SAMPLE) wi = s.wi;
+        }
+    }
+    vec3 f = bsdf_eval(b, wo, wi, transport);
+    pdf = bsdf_pdf(b, wo, wi, transport);
+    results[4u * index] = vec4(s.wi, s.pdf);
+    results[4u * index + 1u] = vec4(s.f, s.eta);
+    results[4u * index + 2u] = vec4(f, pdf);
+    results[4u * index + 3u] = vec4(float(s.lobe), float(found), float(s.pdf_is_proportional), 0.0f);
+}

@@ -1,0 +1,35 @@
+// Running test kernels with typed buffers.
+#pragma once
+
+#include "core/device.h"
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace lampyris::test {
+
+// The backends that this machine has devices for.
+inline std::vector<std::string> usable_backends() {
+    std::vector<std::string> names;
+    for (const DeviceInfo& info : list_devices())
+        if (std::find(names.begin(), names.end(), info.backend) == names.end()) names.push_back(info.backend);
+    return names;
+}
+
+template <class T>
+BufferHandle upload(Device& device, const std::vector<T>& values, const char* name) {
+    BufferHandle buffer = device.create_buffer(std::max<size_t>(values.size(), 1) * sizeof(T), name);
+    if (!values.empty()) buffer->upload(values.data(), values.size() * sizeof(T));
+    return buffer;
+}
+
+template <class T>
+std::vector<T> download(const BufferHandle& buffer, size_t count) {
+    std::vector<T> values(count);
+    buffer->download(values.data(), count * sizeof(T));
+    return values;
+}
+
+}  // namespace lampyris::test
