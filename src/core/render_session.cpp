@@ -48,6 +48,7 @@ uint32_t RenderSession::next_passes() {
     }
     const uint64_t next_power = std::bit_ceil(progress_.passes + 1);
     count = std::min(count, next_power - progress_.passes);
+    if (max_slice > 0) count = std::min<uint64_t>(count, max_slice);
     if (limits_.passes) count = std::min(count, *limits_.passes - progress_.passes);
     if (count == 0) return 0;
     slice_start_ = Clock::now();

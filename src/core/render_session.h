@@ -40,7 +40,8 @@ class RenderSession {
     const DeviceSceneHandle device_scene;
     Film& film;
     uint32_t seed = 0;
-    uint32_t sampler = 0;  // kernel::SAMPLER_*
+    uint32_t sampler = 0;    // kernel::SAMPLER_*
+    uint32_t max_slice = 0;  // most passes of a slice; 0: no limit
 
     // How many passes to run next, beginning with number next_pass(): 0 when the budget is spent or the user
     // interrupts. Slices last a fraction of a second where passes are that short, and end at powers of two.

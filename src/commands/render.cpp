@@ -1,0 +1,212 @@
+// lampyris render: a scene in, images and their cost out.
+#include "commands/command.h"
+#include "commands/progress.h"
+#include "commands/render_options.h"
+#include "core/file.h"
+#include "core/image/image_io.h"
+#include "core/image/metrics.h"
+#include "core/integrator.h"
+#include "core/plugin.h"
+#include "core/scene/build.h"
+#include "core/statistics.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+
+namespace lampyris {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+struct ChosenIntegrator {
+    std::string name;
+    std::unique_ptr<Integrator> integrator;
+    const ParameterFields* fields = nullptr;
+};
+
+// The integrator of the command line, or the scene's; parameters of the scene first, then the command line's.
+ChosenIntegrator choose_integrator(const RenderOptions& options, SceneSettings& settings, Diagnostics& diagnostics) {
+    ChosenIntegrator chosen;
+    PluginChoice choice;
+    if (!options.integrator.empty()) choice = parse_plugin_choice(options.integrator);
+    chosen.name = choice.name.empty() ? settings.integrator.type : choice.name;
+    const bool from_scene = choice.name.empty();
+    if (from_scene && !integrators().find(chosen.name)) {
+        const auto [message, hint] = integrators().unknown(chosen.name);
+        diagnostics.error(settings.integrator.type_location, message, hint + "; --integrator NAME renders the scene with another one");
+        return chosen;
+    }
+    const IntegratorFactory& factory = integrators().require(chosen.name);
+    chosen.integrator = factory.create();
+    chosen.fields = &factory.fields;
+    void* parameters = chosen.integrator->parameters();
+    set_defaults(parameters, factory.fields);
+    read_parameters(parameters, factory.fields, settings.integrator.parameters, diagnostics);
+    // An integrator that the command line chose takes what it knows of the scene's directive; the rest was meant for another.
+    if (from_scene) {
+        const ParameterList& list = settings.integrator.parameters;
+        std::vector<std::string> known = spec_names(specs_of(factory.fields));
+        list.find("lightsampler");  // lights are chosen by power, whichever of pbrt's samplers is named
+        if (list.get_bool("regularize", false, diagnostics))
+            diagnostics.unsupported(list.find("regularize")->location, "path regularization");
+        known.insert(known.end(), {"lightsampler", "regularize"});
+        list.report_unused(fmt::format("integrator \"{}\"", chosen.name), known, diagnostics);
+    }
+    const std::string of_what = fmt::format("integrator \"{}\"", chosen.name);
+    for (const auto& [key, value] : choice.settings) set_parameter(parameters, factory.fields, key, value, of_what);
+    for (const auto& [key, value] : options.settings_of("integrator")) set_parameter(parameters, factory.fields, key, value, of_what);
+    return chosen;
+}
+
+std::vector<std::string> choose_outputs(const RenderOptions& options, const SceneSettings& settings) {
+    std::vector<std::string> outputs = options.outputs;
+    if (outputs.empty() && !options.replay) {
+        if (settings.output.empty()) throw InputError("error: no output: name an image with -o IMAGE.exr (or .pfm, .png)");
+        outputs.push_back(settings.output);
+    }
+    return outputs;
+}
+
+void print_summary(const RunRecord& run, const std::vector<std::string>& outputs) {
+    fmt::print("{}: {}, {} passes, {} ({} in all), {:.2f} Mrays/s on {}\n", run.scene, run.integrator, run.progress.passes,
+               duration_text(run.progress.wall_s), duration_text(run.total_s),
+               run.progress.wall_s > 0.0 ? double(run.film.rays) / run.progress.wall_s * 1e-6 : 0.0, run.backend);
+    fmt::print("{}\n", ProgressDisplay::error_text(run.progress));
+    if (run.film.non_finite > 0)
+        fmt::print(stderr, "warning: {} samples were not finite and are left out; the first one is sample {} of pixel ({}, {}): look at it with --replay {},{},{}\n",
+                   run.film.non_finite, run.film.first_non_finite[2], run.film.first_non_finite[0], run.film.first_non_finite[1],
+                   run.film.first_non_finite[0], run.film.first_non_finite[1], run.film.first_non_finite[2]);
+    for (const std::string& output : outputs) fmt::print("wrote {}\n", output);
+}
+
+// One sample of one pixel, alone: for debugging, and for comparing backends.
+void print_replay(const RenderSession& session, const RenderOptions& options) {
+    const kernel::FilmPixel& p = session.film.pixels()[0];
+    const nlohmann::ordered_json json = {{"schema", "lampyris.replay/1"},
+                                         {"pixel", {(*options.replay)[0], (*options.replay)[1]}},
+                                         {"pass", (*options.replay)[2]},
+                                         {"backend", session.device.backend()},
+                                         {"radiance", {p.sum.x, p.sum.y, p.sum.z}},
+                                         {"weight", p.sum.w},
+                                         {"rays", p.counts.y},
+                                         {"non_finite", p.counts.z},
+                                         {"normal", {p.normal.x, p.normal.y, p.normal.z}},
+                                         {"albedo", {p.albedo.x, p.albedo.y, p.albedo.z}},
+                                         {"depth", p.squares.w}};
+    fmt::print("{}\n", json.dump(2));
+}
+
+int render(const RenderOptions& options) {
+    const Clock::time_point program_start = Clock::now();
+    RunRecord run;
+    auto sources = std::make_shared<Sources>();
+    Diagnostics diagnostics(*sources);
+    diagnostics.set_skip_unsupported(options.skip_unsupported);
+    SceneDescription description = parse_scene_file(options.scene, sources, diagnostics);
+    run.parse_s = seconds_since(program_start);
+    const Clock::time_point scene_start = Clock::now();
+    BuiltScene built = build_scene(std::move(description), options.build, diagnostics);
+    ChosenIntegrator chosen = choose_integrator(options, built.settings, diagnostics);
+    if (!options.quiet)
+        for (const std::string& warning : diagnostics.warnings()) fmt::print(stderr, "{}\n", warning);
+    diagnostics.throw_if_errors();
+    built.scene.unsupported = diagnostics.unsupported_list();
+    run.scene_s = seconds_since(scene_start);
+
+    if (options.replay) {
+        const auto [x, y, pass] = *options.replay;
+        if (x < 0 || y < 0 || x >= int(built.scene.width()) || y >= int(built.scene.height()))
+            throw InputError(fmt::format("error: --replay {},{},{}: the picture has {}x{} pixels", x, y, pass, built.scene.width(), built.scene.height()));
+        built.settings.crop = {x, y, x + 1, y + 1};
+    }
+    const std::vector<std::string> outputs = choose_outputs(options, built.settings);
+    for (const std::string& output : outputs) check_image_output(output, options.write);
+    if (!options.statistics_file.empty()) check_writable(options.statistics_file);
+    std::optional<std::vector<float>> reference;
+    const std::array<int, 4>& crop = built.settings.crop;
+    if (!options.reference.empty()) {
+        Image image = read_image(options.reference, {true, true});
+        const int width = crop[2] - crop[0], height = crop[3] - crop[1];
+        if (image.width == int(built.scene.width()) && image.height == int(built.scene.height()))
+            image = image.crop({crop[0], crop[1], crop[2], crop[3]});
+        if (image.width != width || image.height != height)
+            throw InputError(fmt::format("error: {}: the reference has {} pixels, the picture {}x{}", options.reference, image.size_text(), width, height));
+        reference = std::move(image.pixels);
+    }
+
+    const std::unique_ptr<Device> device = create_device(options.backend, options.device);
+    const DeviceSceneHandle device_scene = device->upload(built.scene);
+    Film film(*device, built.scene, crop);
+    BudgetLimits limits = options.limits;
+    if (!limits.passes && !limits.seconds && !limits.target_error) limits.passes = uint64_t(built.settings.samples_per_pixel);
+    if (options.replay) limits = {1, {}, {}};
+    RenderSession session(*device, built.scene, device_scene, film, limits);
+    session.seed = options.seed.value_or(built.settings.seed);
+    session.sampler = built.settings.sampler == "independent" ? kernel::SAMPLER_INDEPENDENT : kernel::SAMPLER_SOBOL;
+    if (options.replay) session.start_at(uint64_t((*options.replay)[2]));
+    ProgressDisplay display(options.quiet || options.replay.has_value(), limits);
+    session.on_progress = [&](const RenderProgress& progress, const Film& current) {
+        ConvergencePoint point{progress.wall_s, progress.passes, progress.estimated_error, {}};
+        if (reference) point.against_reference = measure(current.rgb(), *reference);
+        run.convergence.push_back(std::move(point));
+        display.show(progress);
+    };
+    install_interrupt_handler();
+    chosen.integrator->render(session);
+
+    film.download();
+    if (options.replay) {
+        print_replay(session, options);
+        return int(ExitCode::kDone);
+    }
+    run.scene = built.scene.name;
+    run.integrator = chosen.name;
+    run.integrator_parameters = show_parameters(chosen.integrator->parameters(), *chosen.fields);
+    run.backend = device->backend();
+    run.device = device->description();
+    run.threads = device->threads();
+    run.seed = session.seed;
+    run.sampler = built.settings.sampler;
+    run.resolution = {int(built.scene.width()), int(built.scene.height())};
+    run.crop = crop;
+    run.film = film.summary();
+    run.samples_per_pixel = double(run.film.samples) / double(film.pixel_count());
+    run.progress = session.progress();
+    run.phases = session.phases();
+    run.device_statistics = device->statistics();
+    run.interrupted = session.interrupted();
+    run.total_s = seconds_since(program_start);
+
+    Image image = film.image();
+    image.metadata = image_metadata(run, built.scene);
+    for (const std::string& output : outputs) {
+        const WriteResult written = write_image(output, image, options.write);
+        if (written.clamped > 0) fmt::print(stderr, "warning: {}: {} numbers were larger than a half float holds and were cut to 65504\n", output, written.clamped);
+    }
+    if (!options.statistics_file.empty()) write_file_atomically(options.statistics_file, statistics_json(run, built.scene).dump(2) + "\n");
+    if (!options.quiet) print_summary(run, outputs);
+    return int(run.interrupted ? ExitCode::kInterrupted : ExitCode::kDone);
+}
+
+void add_render(CLI::App& parent, std::function<int()>& run) {
+    auto options = std::make_shared<RenderOptions>();
+    CLI::App* command = parent.add_subcommand("render", "Render a scene: an image, its error and its cost");
+    add_render_options(*command, *options);
+    command->callback([&run, options] {
+        run = [options] {
+            options->finish();
+            return render(*options);
+        };
+    });
+}
+
+REGISTER_COMMAND(add_render);
+
+}  // namespace
+}  // namespace lampyris

@@ -1,0 +1,50 @@
+// Rendering for tests: a scene text or file, a backend, and the film that comes out.
+#pragma once
+
+#include "core/film.h"
+#include "core/integrator.h"
+#include "core/scene/build.h"
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lampyris::test {
+
+struct RenderSettings {
+    std::string backend = "cpu";
+    uint32_t samples = 16;
+    uint32_t seed = 1;
+    unsigned threads = 0;
+    std::optional<std::array<int, 2>> resolution;
+    std::optional<std::string> sampler;  // in place of the scene's: "independent", "sobol"
+    std::string integrator;              // "name:key=value"; empty: the scene's
+    std::map<std::string, std::string> device_settings;
+    uint32_t slice = 0;  // passes per dispatch; 0: as the session decides
+};
+
+struct Rendered {
+    Image image;              // Film::image()
+    FilmSummary summary;
+    std::vector<kernel::FilmPixel> pixels;
+    int width = 0, height = 0;
+    float value(int x, int y, int channel) const { return image.at(x, y, channel); }
+    double luminance(int x, int y) const;
+    double luminance_variance(int x, int y) const;  // of the pixel's mean; channels taken as fully correlated
+    double mean_luminance() const;
+};
+
+// Throws InputError with the scene's errors.
+Rendered render_text(const std::string& scene_text, const RenderSettings& settings, const std::string& directory = ".");
+Rendered render_file(const std::string& path, const RenderSettings& settings);
+
+// Backends to test on: all that have a device on this machine.
+std::vector<std::string> usable_backends();
+
+// Where a failing test leaves its images; the folder exists.
+std::string failure_directory();
+void save_failure(const std::string& name, const Image& image);
+
+}  // namespace lampyris::test
