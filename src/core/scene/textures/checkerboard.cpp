@@ -1,0 +1,27 @@
+#include "core/scene/builder.h"
+
+#include <fmt/format.h>
+
+namespace lampyris {
+namespace {
+
+TextureProgram make(TextureContext& context) {
+    kernel::TextureOp op{};
+    op.data.x = kernel::TEXTURE_CHECKERBOARD;
+    op.data.w = uint32_t(context.reader.get_int("dimension"));
+    if (op.data.w == 3)
+        context.read_position_mapping(op);
+    else
+        context.read_mapping(op);
+    return context.combine({context.operand("tex1", 1.0f), context.operand("tex2", 0.0f)}, op);
+}
+
+const RegisterTexture registration(
+    "checkerboard", "Two textures by turns, in squares of (s, t) or cubes of space, whose sides are 1.",
+    with_mapping({integer("dimension", 2, "2: squares of the mapping; 3: cubes in the texture's space").between(2, 3),
+                  value("tex1", ParameterType::kSpectrum, "1", "in cells whose coordinates add up to an even number; of a float texture a float").textured(),
+                  value("tex2", ParameterType::kSpectrum, "0", "in the others").textured()}),
+    make);
+
+}  // namespace
+}  // namespace lampyris
