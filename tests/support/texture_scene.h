@@ -1,0 +1,110 @@
+// A scene of one far triangle, to which tests add texture programs, images and materials.
+#pragma once
+
+#include "core/device.h"
+#include "core/scene/scene.h"
+
+#include <cstring>
+#include <initializer_list>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lampyris::test {
+
+using kernel::TextureOp;
+
+struct TextureScene {
+    Scene scene;
+
+    TextureScene() {
+        kernel::TransformRecord identity{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
+        scene.transforms.push_back(identity);
+        scene.instances.push_back({identity, {0, 1, 0, 0}});
+        scene.instance_sets.push_back(0);
+        scene.sets.push_back({0, 1});
+        add_geometry(kernel::NONE, 1.0f);
+        scene.positions = {1e6f, 0, 0, 1e6f, 1, 0, 1e6f, 0, 1};
+        scene.positions.resize(16);
+        scene.indices = {0, 1, 2};
+        scene.normals = scene.uvs = scene.distributions = {0.0f};
+        scene.texels = {0};
+        scene.images.resize(1);
+        scene.lights.resize(1);
+        scene.record.counts = {1, 1, 0, 0};
+    }
+
+    // Only the first geometry is traced; the others are there to be asked for their opacity.
+    uint32_t add_geometry(uint32_t alpha_texture, float alpha) {
+        kernel::GeometryRecord g{};
+        g.data = {kernel::GEOMETRY_TRIANGLES, 0, 0, 0};
+        g.ids = {0, kernel::NONE, alpha_texture, 0};
+        g.attributes = {0, 0, 1, 0};
+        g.alpha.x = alpha;
+        scene.geometries.push_back(g);
+        return uint32_t(scene.geometries.size() - 1);
+    }
+    uint32_t add_program(std::vector<TextureOp> ops) {
+        ops.back().data.y |= 1u;
+        const uint32_t first = uint32_t(scene.texture_ops.size());
+        scene.texture_ops.insert(scene.texture_ops.end(), ops.begin(), ops.end());
+        return first;
+    }
+    uint32_t add_image(const std::vector<uint32_t>& words, uint32_t width, uint32_t height, uint32_t format, uint32_t wrap,
+                       uint32_t filtering, uint32_t decode = 0) {
+        kernel::ImageRecord image{};
+        image.data = {uint32_t(scene.texels.size()), width, height, format | wrap << 8 | filtering << 16};
+        image.decode.x = decode;
+        scene.texels.insert(scene.texels.end(), words.begin(), words.end());
+        scene.images.push_back(image);
+        return uint32_t(scene.images.size() - 1);
+    }
+    // A material without textures; the test changes the record that it gets.
+    kernel::MaterialRecord& add_material(uint32_t kind, uint32_t flags = 0) {
+        kernel::MaterialRecord m{};
+        m.data = {kind, flags, kernel::NONE, kernel::NONE};
+        m.textures = m.textures2 = glm::uvec4(kernel::NONE);
+        m.floats.z = 1.5f;
+        m.extra = {10, 1, kernel::NONE, 0};
+        scene.materials.push_back(m);
+        return scene.materials.back();
+    }
+
+    // Runs a test kernel over the probes on a backend.
+    template <typename Answer, typename Probe>
+    std::vector<Answer> run(const std::string& backend, const char* file, const std::vector<Probe>& probes) {
+        if (scene.texture_ops.empty()) scene.texture_ops.resize(1);
+        if (scene.materials.empty()) add_material(kernel::MATERIAL_DIFFUSE);
+        const std::unique_ptr<Device> device = create_device(backend);
+        const DeviceSceneHandle uploaded = device->upload(scene);
+        const BufferHandle in = device->create_buffer(probes.size() * sizeof(Probe), "probes");
+        const BufferHandle out = device->create_buffer(probes.size() * sizeof(Answer), "answers");
+        in->upload(probes.data(), probes.size() * sizeof(Probe));
+        const KernelHandle kernel = device->compile(file, kernel::kAllEffects);
+        const BufferHandle buffers[] = {in, out};
+        device->run(*kernel, uploaded.get(), buffers, 0, uint32_t(probes.size()));
+        std::vector<Answer> answers(probes.size());
+        out->download(answers.data(), answers.size() * sizeof(Answer));
+        return answers;
+    }
+};
+
+inline TextureOp operation(uint32_t kind, uint32_t mapping = kernel::MAPPING_UV, uint32_t option = 0) {
+    TextureOp op{};
+    op.data = {kind, mapping << 8, 0, option};
+    op.m0 = {1, 1, 0, 0};
+    return op;
+}
+inline TextureOp constant_op(glm::vec3 value) {
+    TextureOp op = operation(kernel::TEXTURE_CONSTANT);
+    op.a = glm::vec4(value, 0.0f);
+    return op;
+}
+
+// Records without padding compare by their bytes: backends must agree to the bit.
+template <typename T>
+bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+}  // namespace lampyris::test
