@@ -71,6 +71,7 @@ std::string ParameterSpec::type_text() const {
     std::string result = type == ParameterType::kSpectrum ? "rgb, blackbody or spectrum" : type_name(type);
     if (array) result += " array";
     if (!choices.empty()) result += ", one of " + list_of(choices);
+    if (spectral) result += " or spectrum";
     if (texturable) result += " or texture";
     return result;
 }

@@ -26,6 +26,7 @@ struct ParameterSpec {
     ParameterType type = ParameterType::kFloat;  // kSpectrum: rgb, blackbody or spectrum
     bool array = false;                          // any number of values
     bool texturable = false;                     // a texture of the same name may stand in for the value
+    bool spectral = false;                       // of a float: a spectrum may stand in for it
     bool required = false;
     double number = 0.0;                // default of floats, integers and bools
     std::string text;                   // default of strings; of everything else, what its absence means

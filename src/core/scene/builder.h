@@ -12,6 +12,7 @@
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,11 @@ struct BuildContext {
         bool scales_with_scene = false;
     };
     std::vector<PendingLight> infinite_lights, lights;
+
+    // The record of SceneDescription::materials[i] (kNone: pbrt-v4's default, diffuse 0.5), built when first asked for.
+    // `path` holds the materials that are being built, outermost first: a mix must not contain itself.
+    uint32_t material(uint32_t description_index, const std::vector<uint32_t>& path = {});
+    std::map<uint32_t, uint32_t> built_materials;
 
     // "scene.pbrt:12:1 (Material \"dielectric\")"
     std::string place(const Entity& entity, const char* directive) const;
@@ -89,10 +95,10 @@ struct ShapeContext {
     uint32_t material = 0;                // into Scene::materials
     const AreaLight* area_light = nullptr;
     bool in_object = false;
+    std::string asked_by;
 
-    // Adds the shape's geometry, with material, alpha and orientation filled in, and its lights. Triangles and patches are
-    // given in world space already; `params` and a transform are for quadrics. `areas` are those of the primitives, for
-    // emissive shapes.
+    // Appends a geometry record with material, alpha, orientation and media filled in; the caller adds what its kind
+    // needs (layout.h), and its lights (area_lights.h).
     uint32_t add_geometry(uint32_t kind, uint32_t flags, uint32_t primitive_count);
 };
 using ShapeFactory = void (*)(ShapeContext&);
@@ -104,7 +110,7 @@ struct MaterialContext {
     ParameterReader& reader;
     kernel::MaterialRecord& record;
     std::string asked_by;
-    std::vector<uint32_t> path;  // materials being built, outermost first: a mix must not contain itself
+    std::vector<uint32_t> path;  // see BuildContext::material; ends with this one
     void ask(uint32_t effect) { build.ask(effect, asked_by); }
 };
 using MaterialFactory = void (*)(MaterialContext&);

@@ -48,10 +48,9 @@ glm::vec3 rec709_from(std::string_view color_space, glm::vec3 rgb, SpectrumUse u
 // The spectra that pbrt-v4 knows by name; nothing for an unknown name.
 const SampledSpectrum* named_spectrum(std::string_view name);
 std::vector<std::string> named_spectra();
-bool is_glass_name(std::string_view name);
 
 // The complex index of refraction of a metal per channel, so that its Fresnel reflectance per channel follows the
-// spectral one: see spectrum_metal.cpp.
+// spectral one: see spectrum_named.cpp.
 struct ConductorRgb {
     glm::vec3 eta, k;
 };

@@ -191,6 +191,7 @@ uint32_t TextureBuilder::image(const std::string& filename, Content content, Loc
     ImageRequest request{context_.resolve(filename), {}, {}, where};
     if (content == Content::kNormalMap) request.encoding.kind = TexelEncoding::Kind::kLinear;
     // Looked up without interpolation, as pbrt does: so the density from which directions are sampled matches the light exactly.
+    if (content == Content::kProjection) request.lookup = {kernel::WRAP_CLAMP, kernel::FILTER_POINT};
     if (content == Content::kEnvironment) request.lookup = {kernel::WRAP_OCTAHEDRAL, kernel::FILTER_POINT};
     return load(requests_[request_image(request)]);
 }

@@ -35,7 +35,8 @@ class TextureBuilder {
     uint32_t image_program(const std::string& filename, glm::vec3 scale, Location where);
 
     // An image record (index into Scene::images) of a file. kNone, and an error at `where`, where it cannot be read.
-    enum class Content { kColor, kNormalMap, kEnvironment };  // encoding by the file's type; linear; octahedral, linear
+    // Normal maps are linear; environments are octahedral squares; these and projections are looked up texel by texel.
+    enum class Content { kColor, kNormalMap, kEnvironment, kProjection };
     uint32_t image(const std::string& filename, Content content, Location where);
     // The decoded texels of an image record: linear Rec.709, as kernels see them, row by row from the top (3 floats each).
     std::vector<glm::vec3> pixels(uint32_t image) const { return images_->pixels(image); }

@@ -1,0 +1,103 @@
+#include "core/scene/area_lights.h"
+
+#include "core/scene/lights/common.h"
+
+#include <fmt/format.h>
+#include <glm/glm.hpp>
+
+#include <numbers>
+
+namespace lampyris {
+
+Registry<AreaLightFactory>& area_light_registry() {
+    static Registry<AreaLightFactory> registry("area light", "Light from surfaces: `AreaLightSource \"name\"`.");
+    return registry;
+}
+RegisterAreaLight::RegisterAreaLight(const char* name, const char* summary, ParameterSpecs specs, AreaLightFactory factory) {
+    area_light_registry().add({name, summary, std::move(specs)}, factory);
+}
+
+AreaLight read_area_light(BuildContext& context, Entity& entity) {
+    AreaLight light;
+    const AreaLightFactory* factory = area_light_registry().find(entity.type);
+    if (!factory) {
+        const auto [message, hint] = area_light_registry().unknown(entity.type);
+        context.diagnostics.error(entity.type_location, message, hint);
+        return light;
+    }
+    light.asked_by = context.place(entity, "AreaLightSource");
+    ParameterReader reader(area_light_registry().find_info(entity.type)->parameters, entity, context.diagnostics);
+    AreaLightContext area_light{context, entity, reader, light};
+    (*factory)(area_light);
+    reader.finish(fmt::format("area light \"{}\"", entity.type));
+    light.valid = true;
+    return light;
+}
+
+namespace {
+
+void build_diffuse(AreaLightContext& context) {
+    ParameterReader& reader = context.reader;
+    AreaLight& light = context.light;
+    light.two_sided = reader.get_bool("twosided");
+    const float scale = reader.get_float("scale");
+    light.power = reader.get_float("power");
+    const std::string filename = reader.get_string("filename");
+    if (!filename.empty()) {
+        if (reader.has("L")) reader.error("L", "both \"L\" and \"filename\" are given", "one of them");
+        light.radiance = glm::vec3(scale);
+        light.texture = context.build.textures.image_program(filename, glm::vec3(1.0f), reader.location("filename"));
+        if (light.texture != kNone)
+            light.texture_average = context.build.textures.average(context.build.scene.texture_ops[light.texture].data.z);
+        light.power_luminance = luminance_of(light.texture_average);
+        context.build.ask(kernel::EFFECT_LIGHT_TEXTURES, light.asked_by);
+        reader.find("L");
+    } else {
+        light.radiance = scale * read_spectrum(context.build, reader, "L", SpectrumUse::kLight, glm::vec3(1.0f));
+    }
+    context.build.ask(kernel::EFFECT_AREA_LIGHTS, light.asked_by);
+}
+
+ParameterSpecs diffuse_specs() {
+    return {
+        value("L", ParameterType::kSpectrum, "1 1 1", "radiance that leaves the surface; a spectrum other than rgb is scaled to luminance 1"),
+        real("scale", 1.0, "multiplies the radiance").at_least(0),
+        real("power", 0.0, "luminous power of each primitive, 0: as L and scale say; as in pbrt-v4, rgb values of L multiply it").at_least(0),
+        boolean("twosided", false, "whether the back emits, too"),
+        text("filename", "", "an image over uv instead of L"),
+    };
+}
+
+const RegisterAreaLight diffuse("diffuse", "Emits the same radiance in all directions.", diffuse_specs(), build_diffuse);
+
+}  // namespace
+
+void begin_area_lights(ShapeContext& context, uint32_t geometry, uint32_t primitive_count) {
+    // Counted among the lights that are not infinite; build_scene moves it behind the infinite ones.
+    context.build.scene.geometries[geometry].ids.y = uint32_t(context.build.lights.size());
+    if (context.area_light->power > 0.0f && primitive_count > 1)
+        context.build.diagnostics.warning(context.shape.location, fmt::format("each of the {} primitives emits the whole \"power\"", primitive_count),
+                                          "as in pbrt-v4");
+}
+
+void add_area_light(ShapeContext& context, kernel::LightRecord record, uint32_t geometry, uint32_t primitive, float area,
+                    float nominal_area) {
+    const AreaLight& light = *context.area_light;
+    const float sides = light.two_sided ? 2.0f : 1.0f;
+    glm::vec3 radiance = light.radiance;
+    // pbrt-v4, lights.cpp, DiffuseAreaLight::Create.
+    if (light.power > 0.0f) {
+        const float emitted = light.power_luminance * sides * nominal_area * std::numbers::pi_v<float>;
+        radiance = emitted > 0.0f ? radiance * (light.power / emitted) : glm::vec3(0.0f);
+    }
+    record.data.y = light.two_sided ? kernel::LIGHT_TWO_SIDED : 0u;
+    record.data.z = light.texture;
+    record.data.w = kernel::NONE;
+    record.ids = {geometry, primitive, 0u, 0u};
+    record.emission = {radiance, 0.0f};
+    const glm::vec3 average = light.texture == kNone ? radiance : radiance * light.texture_average;
+    context.build.lights.push_back({record, luminance_of(average) * sides * area * std::numbers::pi_v<float>, false});
+    if (record.data.x == kernel::LIGHT_GEOMETRY) context.build.ask(kernel::EFFECT_QUADRIC_LIGHTS, light.asked_by);
+}
+
+}  // namespace lampyris

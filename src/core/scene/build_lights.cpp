@@ -1,0 +1,44 @@
+#include "core/scene/build_lights.h"
+
+#include "core/scene/light_distribution.h"
+
+#include <fmt/format.h>
+
+namespace lampyris {
+
+void build_lights(BuildContext& context) {
+    for (LightDescription& light : context.description.lights) {
+        const LightFactory* factory = light_registry().find(light.type);
+        if (!factory) {
+            const auto [message, hint] = light_registry().unknown(light.type);
+            context.diagnostics.error(light.type_location, message, hint);
+            continue;
+        }
+        if (light.world_from_light.animated()) context.refuse_motion(light.world_from_light, light.location);
+        ParameterReader reader(light_registry().find_info(light.type)->parameters, light, context.diagnostics);
+        LightContext light_context{context, light, reader, context.place(light, "LightSource")};
+        (*factory)(light_context);
+        reader.finish(fmt::format("light \"{}\"", light.type));
+    }
+}
+
+void finish_lights(BuildContext& context) {
+    Scene& scene = context.scene;
+    const uint32_t infinite = uint32_t(context.infinite_lights.size());
+    std::vector<BuildContext::PendingLight> all = std::move(context.infinite_lights);
+    all.insert(all.end(), context.lights.begin(), context.lights.end());
+    for (kernel::GeometryRecord& geometry : scene.geometries)
+        if (geometry.ids.y != kernel::NONE) geometry.ids.y += infinite;
+
+    const float radius = scene.record.bounds.w;
+    std::vector<float> powers;
+    for (const auto& light : all) {
+        scene.lights.push_back(light.record);
+        powers.push_back(light.power * (light.scales_with_scene ? radius * radius : 1.0f));
+    }
+    scene.record.lights.x = uint32_t(all.size());
+    scene.record.lights.y = infinite;
+    if (!all.empty()) choose_lights(scene, powers);
+}
+
+}  // namespace lampyris

@@ -1,0 +1,61 @@
+// Materials: from descriptions to records, when a shape first asks for one.
+#include "core/scene/builder.h"
+
+#include <fmt/format.h>
+
+namespace lampyris {
+
+namespace {
+
+// Materials of pbrt-v4 that Lampyris does not simulate; grey takes their place where that is skipped.
+constexpr const char* kUnsupported[] = {"subsurface", "hair", "measured"};
+
+kernel::MaterialRecord blank_material() {
+    kernel::MaterialRecord record{};
+    record.data = {kernel::MATERIAL_DIFFUSE, 0u, kernel::NONE, kernel::NONE};
+    record.textures = kernel::uvec4(kernel::NONE);
+    record.textures2 = kernel::uvec4(kernel::NONE);
+    record.extra = {0u, 0u, kernel::NONE, kernel::NONE};
+    record.color0 = kernel::vec4(0.5f, 0.5f, 0.5f, 1.0f);
+    return record;
+}
+
+bool refuse_unsupported(BuildContext& context, const MaterialDescription& material) {
+    for (const char* name : kUnsupported) {
+        if (material.type != name) continue;
+        context.diagnostics.unsupported(material.type_location.known() ? material.type_location : material.location,
+                                        fmt::format("material \"{}\"", name), "diffuse grey takes its place if skipped");
+        return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+uint32_t BuildContext::material(uint32_t description_index, const std::vector<uint32_t>& path) {
+    const auto built = built_materials.find(description_index);
+    if (built != built_materials.end()) return built->second;
+    kernel::MaterialRecord record = blank_material();
+    if (description_index != kNone) {
+        MaterialDescription& material = description.materials[description_index];
+        // pbrt-v4 still takes the older names.
+        if (material.type.empty() || material.type == "none") material.type = "interface";
+        const MaterialFactory* factory = material_registry().find(material.type);
+        if (factory) {
+            ParameterReader reader(material_registry().find_info(material.type)->parameters, material, diagnostics);
+            MaterialContext context{*this, material, reader, record, place(material, material.name.empty() ? "Material" : "MakeNamedMaterial"), path};
+            context.path.push_back(description_index);
+            (*factory)(context);
+            reader.finish(fmt::format("material \"{}\"", material.type));
+        } else if (!refuse_unsupported(*this, material)) {
+            const auto [message, hint] = material_registry().unknown(material.type);
+            diagnostics.error(material.type_location.known() ? material.type_location : material.location, message, hint);
+        }
+    }
+    const uint32_t index = uint32_t(scene.materials.size());
+    scene.materials.push_back(record);
+    built_materials.emplace(description_index, index);
+    return index;
+}
+
+}  // namespace lampyris

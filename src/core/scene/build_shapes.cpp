@@ -1,0 +1,208 @@
+#include "core/scene/build_shapes.h"
+
+#include "core/scene/area_lights.h"
+
+#include <fmt/format.h>
+#include <glm/glm.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+namespace lampyris {
+
+uint32_t ShapeContext::add_geometry(uint32_t kind, uint32_t flags, uint32_t primitive_count) {
+    kernel::GeometryRecord record{};
+    if (shape.reverse_orientation) flags |= kernel::GEOMETRY_REVERSED;
+    if (shape.reverse_orientation != swaps_handedness(shape.world_from_object.matrix[0])) flags |= kernel::GEOMETRY_FLIP;
+    record.data = {kind, flags, 0u, 0u};
+    record.ids = {material, kernel::NONE, kernel::NONE, kernel::NONE};
+    record.attributes = {kernel::NONE, kernel::NONE, primitive_count, 0xffffffffu};
+    const FloatSlot alpha = read_float(build, reader, "alpha");
+    record.ids.z = alpha.texture;
+    record.alpha.x = alpha.value;
+    if (alpha.texture != kNone || alpha.value < 1.0f) {
+        build.ask(kernel::EFFECT_ALPHA, asked_by);
+        if (area_light)
+            build.diagnostics.unsupported(reader.location("alpha"), "alpha on an area light", "the light is sampled as if all of it were there");
+    }
+    build.scene.geometries.push_back(record);
+    return uint32_t(build.scene.geometries.size() - 1);
+}
+
+namespace {
+
+class ShapeBuilder {
+ public:
+    explicit ShapeBuilder(BuildContext& context) : context_(context), area_lights_(context.description.area_lights.size()) {}
+
+    GeometrySet build(std::vector<ShapeDescription>& shapes, bool in_object) {
+        GeometrySet set{uint32_t(context_.scene.geometries.size()), 0};
+        for (ShapeDescription& shape : shapes) {
+            build(shape, in_object);
+            shape.parameters.parameters.clear();
+            shape.parameters.parameters.shrink_to_fit();
+        }
+        set.geometry_count = uint32_t(context_.scene.geometries.size()) - set.first_geometry;
+        return set;
+    }
+
+ private:
+    void build(ShapeDescription& shape, bool in_object) {
+        const ShapeFactory* factory = shape_registry().find(shape.type);
+        if (!factory) {
+            refuse(shape);
+            return;
+        }
+        if (shape.world_from_object.animated()) context_.refuse_motion(shape.world_from_object, shape.location);
+        const glm::mat4& matrix = shape.world_from_object.matrix[0];
+        const double determinant = glm::determinant(glm::dmat3(glm::mat3(matrix)));
+        if (!std::isfinite(determinant) || determinant == 0.0) {
+            context_.diagnostics.error(shape.location, "the transform in force here cannot be inverted", "a scale by 0, or numbers out of range?");
+            return;
+        }
+        refuse_media(shape);
+        ParameterReader reader(shape_registry().find_info(shape.type)->parameters, shape, context_.diagnostics);
+        ShapeContext context{context_, shape, reader, context_.material(shape.material), area_light(shape, in_object), in_object,
+                             context_.place(shape, "Shape")};
+        (*factory)(context);
+        reader.finish(fmt::format("shape \"{}\"", shape.type));
+    }
+
+    void refuse(const ShapeDescription& shape) {
+        if (shape.type == "curve" || shape.type == "heightfield") {
+            context_.diagnostics.unsupported(shape.type_location, fmt::format("shape \"{}\"", shape.type), "it is left out if skipped");
+            return;
+        }
+        const auto [message, hint] = shape_registry().unknown(shape.type);
+        context_.diagnostics.error(shape.type_location, message, hint);
+    }
+
+    void refuse_media(const ShapeDescription& shape) {
+        for (const uint32_t medium : {shape.interior_medium, shape.exterior_medium})
+            if (medium != kNone) refused_media_.insert(medium).second ? refuse_medium(context_.description.media[medium]) : void();
+    }
+    void refuse_medium(const MediumDescription& medium) {
+        context_.diagnostics.unsupported(medium.location, fmt::format("participating medium \"{}\"", medium.name), "empty space takes its place if skipped");
+    }
+
+    const AreaLight* area_light(const ShapeDescription& shape, bool in_object) {
+        if (shape.area_light == kNone) return nullptr;
+        Entity& entity = context_.description.area_lights[shape.area_light];
+        AreaLight& light = area_lights_[shape.area_light];
+        if (!read_.contains(shape.area_light)) {
+            read_.insert(shape.area_light);
+            light = read_area_light(context_, entity);
+        }
+        const auto ignore = [&](const char* why) {
+            context_.diagnostics.warning(shape.location, fmt::format("the area light is ignored: {}", why), "as in pbrt-v4");
+            return nullptr;
+        };
+        if (in_object) return ignore("the shape is a part of an instanced object");
+        if (context_.scene.materials[context_.material(shape.material)].data.x == kernel::MATERIAL_INTERFACE)
+            return ignore("the shape's material is \"interface\"");
+        return light.valid ? &light : nullptr;
+    }
+
+    BuildContext& context_;
+    std::vector<AreaLight> area_lights_;
+    std::set<uint32_t> read_, refused_media_;
+};
+
+}  // namespace
+
+void build_shapes(BuildContext& context) {
+    SceneDescription& description = context.description;
+    Scene& scene = context.scene;
+    ShapeBuilder builder(context);
+    scene.sets.push_back(builder.build(description.shapes, false));
+    kernel::InstanceRecord world{};
+    world.transform = transform_record(glm::mat4(1.0f));
+    world.data = {0u, scene.sets[0].geometry_count, kernel::NONE, 0u};
+    scene.instances.push_back(world);
+    scene.instance_sets.push_back(0);
+
+    std::map<uint32_t, uint32_t> set_of_object;
+    for (const InstanceDescription& instance : description.instances) {
+        if (instance.object >= description.objects.size()) continue;
+        ObjectDescription& object = description.objects[instance.object];
+        if (!set_of_object.contains(instance.object)) {
+            set_of_object.emplace(instance.object, uint32_t(scene.sets.size()));
+            scene.sets.push_back(builder.build(object.shapes, true));
+        }
+        const uint32_t index = set_of_object[instance.object];
+        const GeometrySet& set = scene.sets[index];
+        if (instance.world_from_object.animated()) context.refuse_motion(instance.world_from_object, instance.location);
+        const glm::mat4& matrix = instance.world_from_object.matrix[0];
+        const double determinant = glm::determinant(glm::dmat3(glm::mat3(matrix)));
+        if (!std::isfinite(determinant) || determinant == 0.0) {
+            context.diagnostics.error(instance.location, "the transform in force here cannot be inverted", "a scale by 0, or numbers out of range?");
+            continue;
+        }
+        if (set.geometry_count == 0) continue;
+        kernel::InstanceRecord record{};
+        record.transform = transform_record(matrix);
+        record.data = {set.first_geometry, set.geometry_count, kernel::NONE, swaps_handedness(matrix) ? 1u : 0u};
+        scene.instances.push_back(record);
+        scene.instance_sets.push_back(index);
+        context.ask(kernel::EFFECT_INSTANCES, fmt::format("{} (ObjectInstance \"{}\")", description.sources->describe(instance.location), object.name));
+    }
+    for (uint32_t i = 0; i < description.objects.size(); ++i)
+        if (!set_of_object.contains(i))
+            scene.notes.push_back(fmt::format("object \"{}\" is never instanced", description.objects[i].name));
+}
+
+namespace {
+
+struct Box {
+    glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+    void add(glm::dvec3 p) { low = glm::min(low, p), high = glm::max(high, p); }
+    bool empty() const { return low.x > high.x; }
+    // The corners of this box, transformed, into another.
+    void add_to(Box& box, const kernel::TransformRecord& t) const {
+        for (int corner = 0; corner < 8; ++corner) {
+            const glm::dvec4 p(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z, 1.0);
+            box.add({glm::dot(glm::dvec4(t.to0), p), glm::dot(glm::dvec4(t.to1), p), glm::dot(glm::dvec4(t.to2), p)});
+        }
+    }
+};
+
+Box set_bounds(const Scene& scene, const GeometrySet& set) {
+    Box box;
+    for (uint32_t i = set.first_geometry; i < set.first_geometry + set.geometry_count; ++i) {
+        const kernel::GeometryRecord& g = scene.geometries[i];
+        if (g.data.x <= kernel::GEOMETRY_BILINEAR) {
+            const uint32_t corners = g.data.x == kernel::GEOMETRY_TRIANGLES ? 3 : 4;
+            for (uint32_t k = 0; k < g.attributes.z * corners; ++k) {
+                const size_t v = size_t(g.data.w) + scene.indices[g.data.z + k];
+                box.add({scene.positions[3 * v], scene.positions[3 * v + 1], scene.positions[3 * v + 2]});
+            }
+        } else {
+            Box own;
+            const bool disk = g.data.x == kernel::GEOMETRY_DISK;
+            const double radius = disk ? g.params.y : g.params.x;
+            own.add({-radius, -radius, disk ? g.params.x : g.params.y});
+            own.add({radius, radius, disk ? g.params.x : g.params.z});
+            own.add_to(box, scene.transforms[g.ids.w]);
+        }
+    }
+    return box;
+}
+
+}  // namespace
+
+kernel::vec4 bounding_sphere(const Scene& scene) {
+    Box world;
+    std::vector<Box> boxes;
+    for (const GeometrySet& set : scene.sets) boxes.push_back(set_bounds(scene, set));
+    for (size_t i = 0; i < scene.instances.size(); ++i) {
+        const Box& box = boxes[scene.instance_sets[i]];
+        if (!box.empty()) box.add_to(world, scene.instances[i].transform);
+    }
+    if (world.empty()) return {0.0f, 0.0f, 0.0f, 1.0f};
+    const glm::dvec3 centre = 0.5 * (world.low + world.high);
+    return {glm::vec3(centre), float(std::max(glm::length(world.high - centre), 1e-30))};
+}
+
+}  // namespace lampyris

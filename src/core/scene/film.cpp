@@ -1,0 +1,122 @@
+// Film "rgb" and "gbuffer": resolution, crop, exposure.
+#include "core/scene/film.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+namespace lampyris {
+
+namespace {
+
+using Rectangle = std::array<int, 4>;  // x0 y0 x1 y1, half-open
+
+constexpr int kLargestSide = 1 << 15;
+
+bool read_rectangle(FilmContext& film, std::array<int, 2> size, Rectangle& crop) {
+    ParameterReader& reader = film.reader;
+    const Parameter* bounds = reader.find("pixelbounds");
+    const Parameter* window = reader.find("cropwindow");
+    if (bounds) {
+        const auto* numbers = std::get_if<std::vector<int32_t>>(&bounds->values);
+        if (!numbers || numbers->size() != 4) {
+            reader.error("pixelbounds", "\"pixelbounds\" must be four integers", "x0 x1 y0 y1");
+            return false;
+        }
+        crop = {(*numbers)[0], (*numbers)[2], (*numbers)[1], (*numbers)[3]};
+        if (window) reader.error("cropwindow", "both \"cropwindow\" and \"pixelbounds\" are given", "one of them");
+    } else if (window) {
+        const auto* numbers = std::get_if<std::vector<float>>(&window->values);
+        if (!numbers || numbers->size() != 4) {
+            reader.error("cropwindow", "\"cropwindow\" must be four numbers", "x0 x1 y0 y1, each between 0 and 1");
+            return false;
+        }
+        // pbrt-v4 rounds both ends up (film.cpp, FilmBaseParameters).
+        const auto pixel = [](float share, int side) { return int(std::ceil(float(side) * std::fmin(std::fmax(share, 0.0f), 1.0f))); };
+        crop = {pixel((*numbers)[0], size[0]), pixel((*numbers)[2], size[1]), pixel((*numbers)[1], size[0]), pixel((*numbers)[3], size[1])};
+    }
+    return true;
+}
+
+void build_film(FilmContext& film) {
+    ParameterReader& reader = film.reader;
+    BuildContext& build = film.build;
+    std::array<int, 2> size{reader.get_int("xresolution"), reader.get_int("yresolution")};
+    Rectangle crop{0, 0, size[0], size[1]};
+    bool good = read_rectangle(film, size, crop);
+    Location where = reader.location(reader.has("pixelbounds") ? "pixelbounds" : "cropwindow");
+    if (build.options.resolution) {
+        // The crop window keeps its place in the picture.
+        const auto moved = [&](int at, int axis) {
+            return int(std::lround(double(at) * (*build.options.resolution)[size_t(axis)] / size[size_t(axis)]));
+        };
+        crop = {moved(crop[0], 0), moved(crop[1], 1), moved(crop[2], 0), moved(crop[3], 1)};
+        size = *build.options.resolution;
+    }
+    if (build.options.crop) crop = *build.options.crop;
+    if (good && (crop[0] < 0 || crop[1] < 0 || crop[2] > size[0] || crop[3] > size[1] || crop[0] >= crop[2] || crop[1] >= crop[3])) {
+        const std::string message = fmt::format("the pixels {},{} to {},{} are not a part of the {}x{} picture", crop[0], crop[1],
+                                                crop[2], crop[3], size[0], size[1]);
+        build.diagnostics.error(where, message, "the window must not be empty, nor larger than the picture");
+        crop = {0, 0, size[0], size[1]};
+    }
+    film.record.film = {uint32_t(size[0]), uint32_t(size[1]), uint32_t(crop[0]), uint32_t(crop[1])};
+    build.settings.crop = crop;
+    build.settings.output = reader.get_string("filename");
+    build.settings.save_half = reader.get_bool("savefp16");
+    reader.get_float("diagonal");  // of realistic cameras
+
+    // pbrt-v4: a sensor's numbers are the light times exposure time times ISO / 100; clamped per sample, after that.
+    Entity& camera = build.description.camera;
+    Diagnostics quiet(*build.description.sources);  // the camera's own factory tells what is wrong with these
+    const float open = camera.parameters.get_float("shutteropen", 0.0f, quiet), close = camera.parameters.get_float("shutterclose", 1.0f, quiet);
+    const float exposure = reader.has("exposuretime") ? reader.get_float("exposuretime") : close - open;
+    film.record.lens.w = exposure > 0.0f ? exposure * reader.get_float("iso") / 100.0f : 1.0f;
+    const float largest = reader.get_float("maxcomponentvalue");
+    film.record.lens.z = std::isfinite(largest) && largest < 3e38f ? largest : 0.0f;
+    const std::string sensor = reader.get_string("sensor");
+    if (sensor != "cie1931")
+        build.diagnostics.unsupported(reader.location("sensor"), fmt::format("sensor \"{}\"", sensor), "\"cie1931\", which takes its place if skipped");
+    if (reader.get_float("whitebalance") != 0.0f)
+        build.diagnostics.unsupported(reader.location("whitebalance"), "white balance", "0, which takes its place if skipped");
+    if (build.description.color_space != "srgb")
+        build.scene.notes.push_back(fmt::format("ColorSpace \"{}\": images are written in linear Rec.709 all the same", build.description.color_space));
+}
+
+void build_gbuffer(FilmContext& film) {
+    build_film(film);
+    film.reader.get_string("coordinatesystem");
+    film.build.scene.notes.push_back("Film \"gbuffer\" gives the channels that every EXR of Lampyris has");
+}
+
+ParameterSpecs film_specs() {
+    constexpr double kLargest = double(std::numeric_limits<float>::infinity());
+    return {
+        integer("xresolution", 1280, "width of the picture").between(1, kLargestSide).in("pixels"),
+        integer("yresolution", 720, "height of the picture").between(1, kLargestSide).in("pixels"),
+        values("cropwindow", ParameterType::kFloat, "0 1 0 1", "part to render: x0 x1 y0 y1, shares of the picture"),
+        values("pixelbounds", ParameterType::kInteger, "all", "part to render: x0 x1 y0 y1").in("pixels"),
+        text("filename", "", "where the image goes unless the command line says otherwise"),
+        boolean("savefp16", true, "EXR files hold half floats"),
+        real("diagonal", 35.0, "of the sensor; has no effect on the cameras here").above(0).in("mm"),
+        text("sensor", "cie1931", "spectral response; only cie1931 is known"),
+        real("iso", 100.0, "sensitivity: the image is multiplied by iso / 100").above(0),
+        real("exposuretime", 1.0, "the image is multiplied by it; default: the camera's shutterclose - shutteropen").above(0).in("s"),
+        real("whitebalance", 0.0, "colour temperature that becomes white; 0: none").at_least(0).in("K"),
+        real("maxcomponentvalue", kLargest, "a sample's components are scaled down to at most this").above(0),
+    };
+}
+
+ParameterSpecs gbuffer_specs() {
+    ParameterSpecs specs = film_specs();
+    specs.push_back(text("coordinatesystem", "camera", "of normals and positions; here they are in world space").one_of({"camera", "world"}));
+    return specs;
+}
+
+const RegisterFilm rgb("rgb", "Linear Rec.709 colour.", film_specs(), build_film);
+const RegisterFilm gbuffer("gbuffer", "The same as rgb: every EXR can hold albedo, normals and depth.", gbuffer_specs(), build_gbuffer);
+
+}  // namespace
+
+}  // namespace lampyris

@@ -1,0 +1,64 @@
+// Pixel filters: box and triangle in closed form, gaussian, mitchell and sinc from tables.
+#include "core/scene/film.h"
+#include "core/scene/filter_table.h"
+
+#include <stdexcept>
+#include <vector>
+
+namespace lampyris {
+
+namespace {
+
+void set_radius(FilterContext& context, uint32_t kind) {
+    context.record.data.y = kind;
+    context.record.filtering = {context.reader.get_float("xradius"), context.reader.get_float("yradius"), 0.0f, 0.0f};
+}
+
+void build_box(FilterContext& context) { set_radius(context, kernel::PIXEL_FILTER_BOX); }
+void build_triangle(FilterContext& context) { set_radius(context, kernel::PIXEL_FILTER_TRIANGLE); }
+// A filter of the distance along each axis, given as f(x, radius).
+template <typename F>
+void set_table(FilterContext& context, F&& f) {
+    set_radius(context, kernel::PIXEL_FILTER_GAUSSIAN);
+    const double rx = context.record.filtering.x, ry = context.record.filtering.y;
+    std::vector<float>& distributions = context.build.scene.distributions;
+    try {
+        context.record.data.z = append_filter_table([&](double x) { return f(x, rx); }, rx, [&](double y) { return f(y, ry); }, ry, distributions);
+        context.record.data.w = kFilterTableSize;
+    } catch (const std::invalid_argument& error) {
+        context.build.diagnostics.error(context.reader.entity().location, "the filter's integral is not positive", "other parameters");
+        context.record.data.y = kernel::PIXEL_FILTER_BOX;
+    }
+}
+
+void build_gaussian(FilterContext& context) {
+    const double sigma = context.reader.get_float("sigma");
+    set_table(context, [=](double x, double radius) { return gaussian_filter(x, radius, sigma); });
+}
+void build_mitchell(FilterContext& context) {
+    const double b = context.reader.get_float("B"), c = context.reader.get_float("C");
+    set_table(context, [=](double x, double radius) { return mitchell_filter(x, radius, b, c); });
+}
+void build_sinc(FilterContext& context) {
+    const double tau = context.reader.get_float("tau");
+    set_table(context, [=](double x, double radius) { return sinc_filter(x, radius, tau); });
+}
+
+ParameterSpecs with_radius(double radius, ParameterSpecs specs = {}) {
+    specs.push_back(real("xradius", radius, "reach to either side").above(0).between(0, 64).in("pixels"));
+    specs.push_back(real("yradius", radius, "reach up and down").above(0).between(0, 64).in("pixels"));
+    return specs;
+}
+
+const RegisterFilter box("box", "All of the pixel alike.", with_radius(0.5), build_box);
+const RegisterFilter triangle("triangle", "Falls off linearly.", with_radius(2.0), build_triangle);
+const RegisterFilter gaussian("gaussian", "A Gaussian, lowered to reach zero at the radius.",
+                              with_radius(1.5, {real("sigma", 0.5, "standard deviation").above(0).in("pixels")}), build_gaussian);
+const RegisterFilter mitchell("mitchell", "Mitchell and Netravali's cubic.",
+                              with_radius(2.0, {real("B", 1.0 / 3.0, "blur"), real("C", 1.0 / 3.0, "ringing")}), build_mitchell);
+const RegisterFilter lanczos("sinc", "A sinc under a Lanczos window.",
+                             with_radius(4.0, {real("tau", 3.0, "width of the window").above(0).in("pixels")}), build_sinc);
+
+}  // namespace
+
+}  // namespace lampyris

@@ -1,0 +1,21 @@
+// What several lights share.
+#pragma once
+
+#include "core/scene/builder.h"
+
+#include <glm/mat4x4.hpp>
+
+namespace lampyris {
+
+float luminance_of(glm::vec3 rgb);  // Rec.709
+kernel::LightRecord blank_light(uint32_t kind);
+glm::vec3 transformed_point(const glm::mat4& m, glm::vec3 p);
+// The light's intensity "I" (or "L"), times "scale".
+glm::vec3 read_emission(LightContext& context, std::string_view name);
+// from - to -> the direction of the light, or an error where they are one.
+glm::vec3 read_direction(LightContext& context, glm::vec3& from);
+ParameterSpec emission_spec(const std::string& name, const std::string& of_what);
+ParameterSpec scale_spec();
+ParameterSpec power_spec();
+
+}  // namespace lampyris

@@ -1,0 +1,90 @@
+// Lights "projection" and "goniometric": an intensity that an image gives for each direction.
+#include "core/scene/lights/common.h"
+
+#include <fmt/format.h>
+#include <glm/glm.hpp>
+
+#include <cmath>
+#include <numbers>
+
+namespace lampyris {
+
+namespace {
+
+constexpr float kPi = std::numbers::pi_v<float>;
+
+// Position, image and transform; false where there is no image.
+bool begin_light(LightContext& context, kernel::LightRecord& record, TextureBuilder::Content content) {
+    const std::string filename = context.reader.get_string("filename");
+    context.ask(kernel::EFFECT_PROJECTION_LIGHTS);
+    if (filename.empty()) return false;
+    const glm::mat4& m = context.light.world_from_light.matrix[0];
+    record.data.z = context.build.textures.image(filename, content, context.reader.location("filename"));
+    record.data.w = context.build.add_transform(m, context.light.location);
+    record.v0 = {transformed_point(m, glm::vec3(0.0f)), 0.0f};
+    context.ask(kernel::EFFECT_IMAGES);
+    return record.data.z != kNone;
+}
+
+void add_light(LightContext& context, kernel::LightRecord& record, glm::vec3 scale, double emitted) {
+    if (const float power = context.reader.get_float("power"); power > 0.0f) {
+        scale = emitted > 0.0 ? scale * float(power / emitted) : glm::vec3(0.0f);
+    }
+    record.emission = {scale, 0.0f};
+    context.build.lights.push_back({record, float(luminance_of(scale) * emitted), false});
+}
+
+void build_projection(LightContext& context) {
+    kernel::LightRecord record = blank_light(kernel::LIGHT_PROJECTION);
+    const float scale = context.reader.get_float("scale");
+    const double half = std::tan(double(context.reader.get_float("fov")) * std::numbers::pi / 360.0);
+    if (!begin_light(context, record, TextureBuilder::Content::kProjection)) return;
+    const kernel::ImageRecord& image = context.build.scene.images[record.data.z];
+    const uint32_t width = image.data.y, height = image.data.z;
+    const double aspect = double(width) / height;
+    // The field of view is that of the shorter side, as a camera's.
+    const double x = half * std::fmax(aspect, 1.0), y = half * std::fmax(1.0 / aspect, 1.0);
+    record.v2 = {float(-x), float(-y), float(x), float(y)};
+    // Luminous power: intensity over solid angle, which is cos^3 per area of the picture at z = 1.
+    const std::vector<glm::vec3> pixels = context.build.textures.pixels(record.data.z);
+    double emitted = 0.0;
+    for (uint32_t j = 0; j < height; ++j)
+        for (uint32_t i = 0; i < width; ++i) {
+            const double px = x * (2.0 * (i + 0.5) / width - 1.0), py = y * (2.0 * (j + 0.5) / height - 1.0);
+            emitted += double(luminance_of(pixels[size_t(j) * width + i])) / std::pow(1.0 + px * px + py * py, 1.5);
+        }
+    emitted *= 4.0 * x * y / (double(width) * height);
+    add_light(context, record, glm::vec3(scale), emitted);
+}
+
+void build_goniometric(LightContext& context) {
+    kernel::LightRecord record = blank_light(kernel::LIGHT_GONIOMETRIC);
+    const glm::vec3 intensity = read_emission(context, "I");
+    if (!begin_light(context, record, TextureBuilder::Content::kEnvironment)) {
+        // Without an image it is a point light, as in pbrt-v4.
+        context.ask(kernel::EFFECT_POINT_LIGHTS);
+        record = blank_light(kernel::LIGHT_POINT);
+        record.v0 = {transformed_point(context.light.world_from_light.matrix[0], glm::vec3(0.0f)), 0.0f};
+        add_light(context, record, intensity, 4.0 * kPi);
+        return;
+    }
+    const kernel::ImageRecord& image = context.build.scene.images[record.data.z];
+    if (image.data.y != image.data.z) {
+        context.reader.error("filename", fmt::format("the image is {}x{}", image.data.y, image.data.z), "goniometric lights take square images in the equal-area octahedral mapping");
+        return;
+    }
+    add_light(context, record, intensity, 4.0 * kPi * double(luminance_of(context.build.textures.average(record.data.z))));
+}
+
+const RegisterLight projection("projection", "Throws a picture from a point, like a slide projector.",
+                               {text("filename", "", "the picture").needed(), scale_spec(), power_spec(),
+                                real("fov", 90.0, "field of view across the shorter side").above(0).between(0, 179.9).in("degrees")},
+                               build_projection);
+const RegisterLight goniometric("goniometric", "A point light whose intensity an image gives for each direction.",
+                                {emission_spec("I", "intensity, times the image's"), scale_spec(), power_spec(),
+                                 text("filename", "", "an equal-area octahedral image; the pole is +y of light space")},
+                                build_goniometric);
+
+}  // namespace
+
+}  // namespace lampyris

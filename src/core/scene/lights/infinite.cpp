@@ -1,0 +1,98 @@
+// Light "infinite": the sky, constant or an image.
+#include "core/scene/lights/common.h"
+
+#include "core/scene/light_distribution.h"
+
+#include <fmt/format.h>
+#include <glm/glm.hpp>
+
+#include <cmath>
+#include <numbers>
+
+namespace lampyris {
+
+namespace {
+
+constexpr float kPi = std::numbers::pi_v<float>;
+
+// The z of the direction at a point of the equal-area octahedral square (Clarberg 2008, "Fast equal-area mapping of the
+// (hemi)sphere using SIMD").
+float octahedral_z(float s, float t) {
+    const float u = std::abs(2.0f * s - 1.0f), v = std::abs(2.0f * t - 1.0f);
+    const float distance = 1.0f - (u + v), r = 1.0f - std::abs(distance);
+    return std::copysign(1.0f - r * r, distance);
+}
+
+void build_constant(LightContext& context, float scale) {
+    kernel::LightRecord record = blank_light(kernel::LIGHT_INFINITE);
+    glm::vec3 radiance = scale * read_spectrum(context.build, context.reader, "L", SpectrumUse::kLight, glm::vec3(1.0f));
+    if (const float illuminance = context.reader.get_float("illuminance"); illuminance > 0.0f) radiance *= illuminance / kPi;
+    record.emission = {radiance, 0.0f};
+    context.ask(kernel::EFFECT_ENVIRONMENT);
+    context.build.infinite_lights.push_back({record, luminance_of(radiance) * 4.0f * kPi * kPi, true});
+}
+
+void build_image(LightContext& context, const std::string& filename, float scale) {
+    BuildContext& build = context.build;
+    kernel::LightRecord record = blank_light(kernel::LIGHT_INFINITE_IMAGE);
+    const Location where = context.reader.location("filename");
+    record.data.z = build.textures.image(filename, TextureBuilder::Content::kEnvironment, where);
+    if (record.data.z == kNone) return;
+    const kernel::ImageRecord& image = build.scene.images[record.data.z];
+    const uint32_t width = image.data.y, height = image.data.z;
+    if (width != height) {
+        context.reader.error("filename", fmt::format("the image is {}x{}", width, height),
+                             "infinite lights take square images in the equal-area octahedral mapping, as pbrt-v4 does (imgtool makeequiarea converts)");
+        return;
+    }
+    std::vector<float> weights;
+    double average = 0.0, falling = 0.0;  // luminance over the sphere; over its upper half, by the cosine
+    const std::vector<glm::vec3> pixels = build.textures.pixels(record.data.z);
+    weights.reserve(pixels.size());
+    for (uint32_t y = 0; y < height; ++y)
+        for (uint32_t x = 0; x < width; ++x) {
+            const float luminance = std::fmax(luminance_of(pixels[size_t(y) * width + x]), 0.0f);
+            weights.push_back(luminance);
+            average += luminance;
+            const float z = octahedral_z((float(x) + 0.5f) / float(width), (float(y) + 0.5f) / float(height));
+            if (z > 0.0f) falling += double(luminance) * z;
+        }
+    average /= double(pixels.size());
+    // pbrt-v4, lights.cpp, Light::Create.
+    if (const float illuminance = context.reader.get_float("illuminance"); illuminance > 0.0f) {
+        const double given = falling * 4.0 * std::numbers::pi / double(pixels.size());
+        scale = given > 0.0 ? float(double(scale) * illuminance / given) : 0.0f;
+    }
+    record.data.w = build.add_transform(context.light.world_from_light.matrix[0], context.light.location);
+    record.ids = {append_image_distribution(weights, width, height, build.scene.distributions), width, height, 0u};
+    record.emission = {glm::vec3(scale), 0.0f};
+    context.ask(kernel::EFFECT_ENVIRONMENT);
+    context.ask(kernel::EFFECT_ENVIRONMENT_IMAGE);
+    context.ask(kernel::EFFECT_IMAGES);
+    build.infinite_lights.push_back({record, float(average * scale * 4.0 * std::numbers::pi * std::numbers::pi), true});
+}
+
+void build(LightContext& context) {
+    ParameterReader& reader = context.reader;
+    const float scale = reader.get_float("scale");
+    const std::string filename = reader.get_string("filename");
+    if (reader.find("portal"))
+        context.build.diagnostics.unsupported(reader.location("portal"), "portals of infinite lights", "without it, all of the sky is sampled");
+    if (filename.empty()) {
+        build_constant(context, scale);
+        return;
+    }
+    if (reader.find("L")) reader.error("L", "both \"L\" and \"filename\" are given", "one of them");
+    build_image(context, filename, scale);
+}
+
+const RegisterLight infinite("infinite", "Light from all around: constant, or an equal-area octahedral image.",
+                             {emission_spec("L", "radiance"), scale_spec(),
+                              real("illuminance", 0.0, "on a surface that faces +z of light space, 0: as the other parameters say").at_least(0),
+                              text("filename", "", "an image of the sky instead of L; the pole is +z of light space"),
+                              values("portal", ParameterType::kPoint3, "none", "the window through which light comes (not supported)")},
+                             build);
+
+}  // namespace
+
+}  // namespace lampyris

@@ -1,0 +1,63 @@
+// Lights "point" and "spot".
+#include "core/scene/lights/common.h"
+
+#include <glm/glm.hpp>
+
+#include <cmath>
+#include <numbers>
+
+namespace lampyris {
+
+namespace {
+
+constexpr float kPi = std::numbers::pi_v<float>;
+
+// `sphere` is what an intensity of one sends in all, in sr.
+void add_light(LightContext& context, kernel::LightRecord record, glm::vec3 intensity, float sphere) {
+    if (const float power = context.reader.get_float("power"); power > 0.0f) intensity *= power / sphere;
+    record.emission = {intensity, 0.0f};
+    context.ask(kernel::EFFECT_POINT_LIGHTS);
+    context.build.lights.push_back({record, luminance_of(intensity) * sphere, false});
+}
+
+void build_point(LightContext& context) {
+    kernel::LightRecord record = blank_light(kernel::LIGHT_POINT);
+    const std::vector<float> from = context.reader.get_tuple("from", 3);
+    const glm::vec3 p = from.size() == 3 ? glm::vec3(from[0], from[1], from[2]) : glm::vec3(0.0f);
+    record.v0 = {transformed_point(context.light.world_from_light.matrix[0], p), 0.0f};
+    add_light(context, record, read_emission(context, "I"), 4.0f * kPi);
+}
+
+void build_spot(LightContext& context) {
+    kernel::LightRecord record = blank_light(kernel::LIGHT_SPOT);
+    const float cone = context.reader.get_float("coneangle"), delta = context.reader.get_float("conedeltaangle");
+    if (delta > cone) context.reader.error("conedeltaangle", "\"conedeltaangle\" is larger than \"coneangle\"", "the falloff is a part of the cone");
+    const float begin = std::cos(std::fmax(cone - delta, 0.0f) * kPi / 180.0f), end = std::cos(cone * kPi / 180.0f);
+    glm::vec3 from;
+    const glm::vec3 direction = read_direction(context, from);
+    const glm::mat4& m = context.light.world_from_light.matrix[0];
+    const glm::vec3 axis = glm::mat3(m) * direction;
+    record.v0 = {transformed_point(m, from), 0.0f};
+    record.v1 = {glm::normalize(axis), begin};
+    record.v2 = {0.0f, 0.0f, 0.0f, end};
+    // pbrt-v4, lights.cpp, SpotLight::Create: the falloff counts as half.
+    add_light(context, record, read_emission(context, "I"), 2.0f * kPi * ((1.0f - begin) + (begin - end) / 2.0f));
+}
+
+ParameterSpecs point_specs() {
+    return {emission_spec("I", "intensity"), scale_spec(), power_spec(), value("from", ParameterType::kPoint3, "0 0 0", "position").in("scene units")};
+}
+ParameterSpecs spot_specs() {
+    ParameterSpecs specs = point_specs();
+    specs.push_back(value("to", ParameterType::kPoint3, "0 0 1", "a point on the axis").in("scene units"));
+    specs.push_back(real("coneangle", 30.0, "from the axis to where no light falls").above(0).between(0, 180).in("degrees"));
+    specs.push_back(real("conedeltaangle", 5.0, "over which the light falls off, inside of that").between(0, 180).in("degrees"));
+    return specs;
+}
+
+const RegisterLight point("point", "Sends the same intensity in all directions from a point.", point_specs(), build_point);
+const RegisterLight spot("spot", "A cone of light from a point.", spot_specs(), build_spot);
+
+}  // namespace
+
+}  // namespace lampyris

@@ -1,0 +1,132 @@
+#include "core/scene/materials/common.h"
+
+#include <fmt/format.h>
+#include <glm/glm.hpp>
+
+#include <algorithm>
+
+namespace lampyris {
+
+ParameterSpecs with_surface_detail(ParameterSpecs specs) {
+    specs.push_back(value("displacement", ParameterType::kTexture, "none", "height of a bump map, which tilts the shading normal").in("scene units"));
+    specs.push_back(text("normalmap", "", "an image of shading normals in tangent space"));
+    return specs;
+}
+
+void read_surface_detail(MaterialContext& context) {
+    context.record.data.z = kernel::NONE;
+    context.record.data.w = kernel::NONE;
+    if (const Parameter* bump = context.reader.find("displacement")) {
+        const auto* names = std::get_if<std::vector<std::string>>(&bump->values);
+        if (bump->type != ParameterType::kTexture || !names || names->size() != 1) {
+            context.reader.error("displacement", "\"displacement\" must name one float texture", "\"texture displacement\" \"name\"");
+        } else {
+            context.record.data.z = context.build.textures.float_program(names->front(), bump->value_location);
+            context.ask(kernel::EFFECT_TEXTURES);
+            context.ask(kernel::EFFECT_BUMP);
+        }
+    }
+    const std::string map = context.reader.get_string("normalmap");
+    if (!map.empty()) {
+        context.record.data.w = context.build.textures.image(map, TextureBuilder::Content::kNormalMap, context.reader.location("normalmap"));
+        context.ask(kernel::EFFECT_BUMP);
+    }
+}
+
+void add_roughness(ParameterSpecs& specs, const std::string& prefix, double default_value, const std::string& of_what) {
+    specs.push_back(real(prefix + "roughness", default_value, "of " + of_what + "; 0 is a mirror").at_least(0).textured());
+    specs.push_back(real(prefix + "uroughness", default_value, "along u; default: roughness").at_least(0).textured());
+    specs.push_back(real(prefix + "vroughness", default_value, "along v; default: roughness").at_least(0).textured());
+}
+
+Roughness read_roughness(MaterialContext& context, const std::string& prefix) {
+    const FloatSlot both = read_float(context.build, context.reader, prefix + "roughness");
+    const auto along = [&](const std::string& name) {
+        return context.reader.has(name) ? read_float(context.build, context.reader, name) : both;
+    };
+    return {along(prefix + "uroughness"), along(prefix + "vroughness")};
+}
+
+ParameterSpec remap_spec() {
+    return boolean("remaproughness", true, "whether the microfacets' alpha is the root of the roughness, or the roughness itself");
+}
+
+ParameterSpec eta_spec(const std::string& name, const std::string& of_what) {
+    ParameterSpec spec = real(name, 1.5, "index of refraction of " + of_what + "; a spectrum asks for dispersion").above(0);
+    spec.spectral = true;
+    return spec;
+}
+
+float read_eta(MaterialContext& context, std::string_view name) {
+    constexpr float kSodiumLine = 587.6f;
+    const Parameter* parameter = context.reader.find(name);
+    if (!parameter || parameter->type == ParameterType::kFloat) return context.reader.get_float(name);
+    const float fallback = float(find_spec(context.reader.specs(), name)->number);
+    float eta = fallback;
+    if (parameter->type == ParameterType::kRgb || parameter->type == ParameterType::kTexture) {
+        context.reader.error(name, fmt::format("\"{}\" is of type {}", name, type_name(parameter->type)), "float, or spectrum");
+        return fallback;
+    }
+    const auto spectrum = sampled_spectrum(*parameter, context.build.description.directory, context.build.diagnostics);
+    if (!spectrum) return fallback;
+    const auto [low, high] = std::minmax_element(spectrum->values.begin(), spectrum->values.end());
+    eta = *low == *high ? *low : spectrum->at(kSodiumLine);
+    if (*low != *high)
+        context.build.diagnostics.unsupported(context.reader.location(name), "dispersion (an index of refraction that depends on the wavelength)",
+                                              fmt::format("a constant, \"float {}\" {:.4f}, takes its place if skipped", name, eta));
+    if (eta > 0.0f) return eta;
+    context.reader.error(name, fmt::format("\"{}\" is {:g} at {} nm", name, eta, kSodiumLine), "it must be above 0");
+    return fallback;
+}
+
+void set_color0(MaterialContext& context, const ColorSlot& slot) {
+    context.record.color0 = {slot.value, context.record.color0.w};
+    context.record.textures.x = slot.texture;
+}
+void set_color1(MaterialContext& context, const ColorSlot& slot) {
+    context.record.color1 = {slot.value, 0.0f};
+    context.record.textures.y = slot.texture;
+}
+void set_color2(MaterialContext& context, const ColorSlot& slot) {
+    context.record.color2 = {slot.value, 0.0f};
+    context.record.textures.z = slot.texture;
+}
+
+void add_conductor(ParameterSpecs& specs, const std::string& prefix) {
+    specs.push_back(value(prefix + "eta", ParameterType::kSpectrum, "metal-Cu-eta", "real part of the index of refraction").textured());
+    specs.push_back(value(prefix + "k", ParameterType::kSpectrum, "metal-Cu-k", "its imaginary part").textured());
+    specs.push_back(value("reflectance", ParameterType::kSpectrum, "as eta and k say", "reflectance at normal incidence, instead of eta and k").textured());
+}
+
+void read_conductor(MaterialContext& context, const std::string& prefix) {
+    ParameterReader& reader = context.reader;
+    const std::string eta = prefix + "eta", k = prefix + "k";
+    context.ask(kernel::EFFECT_CONDUCTOR);
+    if (reader.has("reflectance")) {
+        if (reader.has(eta) || reader.has(k))
+            reader.error("reflectance", fmt::format("both \"reflectance\" and \"{}\" are given", reader.has(eta) ? eta : k), "one of them");
+        reader.find(eta), reader.find(k);
+        context.record.data.y |= kernel::MATERIAL_USES_REFLECTANCE;
+        set_color0(context, read_color(context.build, reader, "reflectance", SpectrumUse::kAlbedo, glm::vec3(0.5f)));
+        return;
+    }
+    // Where both are spectra, their reflectance decides: a metal's colour is not that of its mean eta and k.
+    const auto sampled = [&](const std::string& name, const char* absent) -> std::optional<SampledSpectrum> {
+        const Parameter* parameter = reader.find(name);
+        if (!parameter) return *named_spectrum(absent);
+        if (parameter->type != ParameterType::kSpectrum) return {};
+        return sampled_spectrum(*parameter, context.build.description.directory, context.build.diagnostics);
+    };
+    const std::optional<SampledSpectrum> eta_spectrum = sampled(eta, "metal-Cu-eta"), k_spectrum = sampled(k, "metal-Cu-k");
+    if (eta_spectrum && k_spectrum) {
+        const ConductorRgb rgb = conductor_rgb(*eta_spectrum, *k_spectrum);
+        set_color0(context, {rgb.eta, kNone, true});
+        set_color1(context, {rgb.k, kNone, true});
+        return;
+    }
+    static const ConductorRgb copper = conductor_rgb(*named_spectrum("metal-Cu-eta"), *named_spectrum("metal-Cu-k"));
+    set_color0(context, read_color(context.build, reader, eta, SpectrumUse::kUnbounded, copper.eta));
+    set_color1(context, read_color(context.build, reader, k, SpectrumUse::kUnbounded, copper.k));
+}
+
+}  // namespace lampyris

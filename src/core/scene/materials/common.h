@@ -1,0 +1,34 @@
+// What several materials share.
+#pragma once
+
+#include "core/scene/builder.h"
+
+namespace lampyris {
+
+// `specs`, and those that every material has: displacement, normalmap.
+ParameterSpecs with_surface_detail(ParameterSpecs specs);
+void read_surface_detail(MaterialContext& context);
+
+// "roughness", "uroughness", "vroughness" (with a prefix for the layers of coatedconductor).
+void add_roughness(ParameterSpecs& specs, const std::string& prefix, double default_value, const std::string& of_what);
+struct Roughness {
+    FloatSlot u, v;
+    bool smooth() const { return u.texture == kNone && v.texture == kNone && u.value == 0.0f && v.value == 0.0f; }
+};
+Roughness read_roughness(MaterialContext& context, const std::string& prefix);
+ParameterSpec remap_spec();
+
+// An index of refraction that does not depend on the wavelength. A spectrum that varies is dispersion, which is unsupported;
+// skipped, its value at the sodium d line (587.6 nm) holds.
+ParameterSpec eta_spec(const std::string& name, const std::string& of_what);
+float read_eta(MaterialContext& context, std::string_view name);
+
+// eta and k, or reflectance, into color0 and color1, with flags and textures.
+void add_conductor(ParameterSpecs& specs, const std::string& prefix);
+void read_conductor(MaterialContext& context, const std::string& prefix);
+
+void set_color0(MaterialContext& context, const ColorSlot& slot);
+void set_color1(MaterialContext& context, const ColorSlot& slot);
+void set_color2(MaterialContext& context, const ColorSlot& slot);
+
+}  // namespace lampyris

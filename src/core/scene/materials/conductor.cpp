@@ -1,0 +1,32 @@
+// Material "conductor": a metal, by complex Fresnel terms and GGX microfacets.
+#include "core/scene/materials/common.h"
+
+namespace lampyris {
+
+namespace {
+
+void build(MaterialContext& context) {
+    kernel::MaterialRecord& record = context.record;
+    record.data.x = kernel::MATERIAL_CONDUCTOR;
+    read_conductor(context, "");
+    const Roughness roughness = read_roughness(context, "");
+    record.floats.x = roughness.u.value, record.floats.y = roughness.v.value;
+    record.textures.w = roughness.u.texture, record.textures2.x = roughness.v.texture;
+    if (context.reader.get_bool("remaproughness")) record.data.y |= kernel::MATERIAL_REMAP;
+    if (!roughness.smooth()) context.ask(kernel::EFFECT_ROUGH);
+    read_surface_detail(context);
+}
+
+ParameterSpecs specs() {
+    ParameterSpecs specs;
+    add_conductor(specs, "");
+    add_roughness(specs, "", 0.0, "the metal");
+    specs.push_back(remap_spec());
+    return with_surface_detail(std::move(specs));
+}
+
+const RegisterMaterial conductor("conductor", "A metal, smooth or rough (GGX).", specs(), build);
+
+}  // namespace
+
+}  // namespace lampyris

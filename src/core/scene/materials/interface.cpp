@@ -1,0 +1,17 @@
+// Material "interface" (also "" and "none"): a surface that rays pass, the boundary of a medium.
+#include "core/scene/materials/common.h"
+
+namespace lampyris {
+
+namespace {
+
+void build(MaterialContext& context) {
+    context.record.data.x = kernel::MATERIAL_INTERFACE;
+    context.ask(kernel::EFFECT_INTERFACE);
+}
+
+const RegisterMaterial interface_material("interface", "Nothing: rays pass. Bounds a medium.", {}, build);
+
+}  // namespace
+
+}  // namespace lampyris
