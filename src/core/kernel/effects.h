@@ -36,5 +36,10 @@
 LAMPYRIS_EFFECTS(LAMPYRIS_EFFECT_CONSTANT)
 #undef LAMPYRIS_EFFECT_CONSTANT
 CONST uint kAllEffects = 0x03ffffffu;
+// Sets that C++ kernels are built for (KERNEL_CPU_VARIANTS): a scene runs on the smallest one that has all of its effects.
+CONST uint kDiffuseEffects = EFFECT_SMOOTH_NORMALS | EFFECT_AREA_LIGHTS;
+CONST uint kGlassEffects = kDiffuseEffects | EFFECT_QUADRICS | EFFECT_QUADRIC_LIGHTS | EFFECT_CONDUCTOR | EFFECT_DIELECTRIC | EFFECT_ROUGH;
+CONST uint kTexturedEffects = kGlassEffects | EFFECT_TEXTURES | EFFECT_IMAGES | EFFECT_POINT_LIGHTS | EFFECT_DISTANT_LIGHTS |
+                              EFFECT_ENVIRONMENT | EFFECT_ENVIRONMENT_IMAGE | EFFECT_DEPTH_OF_FIELD;
 
 #endif

@@ -1,5 +1,6 @@
 // Path tracing with next-event estimation, multiple importance sampling (Veach 1997, chapters 9 and 10) and Russian
 // roulette. One invocation adds a range of samples to one pixel.
+#define KERNEL_CPU_VARIANTS kAllEffects, kTexturedEffects, kGlassEffects, kDiffuseEffects
 #include "core/kernel/scene.h"
 
 #include "core/kernel/film.h"
