@@ -24,13 +24,6 @@ struct CompareOptions {
     bool json = false;
 };
 
-// A cropped rendering remembers where it lies in the full picture: cut the full one to it.
-void cut_to_window(Image& full, const Image& window) {
-    const bool is_window = window.full_width > window.width || window.full_height > window.height;
-    if (is_window && full.full_width == 0 && full.width == window.full_width && full.height == window.full_height)
-        full = full.crop({window.x, window.y, window.x + window.width, window.y + window.height});
-}
-
 std::string flip_formula(const Comparison& comparison) {
     if (!comparison.hdr) return "LDR-FLIP, 67 pixels per degree (one of the files holds integers)";
     return fmt::format("HDR-FLIP, 67 pixels per degree, ACES, {} exposures from {:+.2f} to {:+.2f} stops",
@@ -86,8 +79,8 @@ void print_json(const CompareOptions& options, const Comparison& comparison) {
 int compare(const CompareOptions& options) {
     if (!options.error_image.empty()) check_image_output(options.error_image);
     Image image = read_image(options.image), reference = read_image(options.reference);
-    cut_to_window(reference, image);
-    cut_to_window(image, reference);
+    reference.cut_to_window_of(image);
+    image.cut_to_window_of(reference);
     Comparison comparison;
     try {
         check_same_size(image, reference);  // also where the crop would fit both

@@ -93,6 +93,14 @@ Image Image::crop(const PixelBounds& bounds) const {
     return result;
 }
 
+void Image::cut_to_window_of(const Image& window) {
+    const bool is_cut_out = window.full_width > window.width || window.full_height > window.height;
+    if (!is_cut_out || full_width != 0 || width != window.full_width || height != window.full_height) return;
+    // A data window may reach beyond the picture (overscan); those pixels are in no full image.
+    if (window.x < 0 || window.y < 0 || window.x + window.width > width || window.y + window.height > height) return;
+    *this = crop({window.x, window.y, window.x + window.width, window.y + window.height});
+}
+
 void Image::add_channels(const std::vector<std::string>& names, const std::vector<float>& values) {
     const size_t added = names.size(), before = size_t(channels), count = pixel_count();
     if (values.size() != count * added)

@@ -55,6 +55,8 @@ struct Image {
     // The pixels inside `bounds`, in this image's pixel coordinates. Throws InputError unless 0 <= x0 < x1 <= width,
     // ...
     Image crop(const PixelBounds& bounds) const;
+    // Where `window` is a cut-out of a picture of this image's size, keeps only the pixels that it has; else does nothing.
+    void cut_to_window_of(const Image& window);
     // Appends channels to every pixel; `values` is [height][width][names.size()].
     void add_channels(const std::vector<std::string>& names, const std::vector<float>& values);
     std::string size_text() const;  // "640x480"
