@@ -283,6 +283,7 @@ double overexposed_light() {
 // are.
 void choose_exposures(const std::vector<glm::vec3>& reference, FlipResult& result) {
     std::vector<float> luminances;
+    luminances.reserve(reference.size());
     for (const glm::vec3& color : reference)
         luminances.push_back(glm::dot(color, glm::vec3(0.2126f, 0.7152f, 0.0722f)));
     const auto middle = luminances.begin() + std::ptrdiff_t(luminances.size() / 2);

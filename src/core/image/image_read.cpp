@@ -55,7 +55,7 @@ Image read_pfm(const std::string& path) {
     }
 }
 
-Image::Storage storage_of(OIIO::TypeDesc type) {
+Image::Storage storage_of(const OIIO::TypeDesc& type) {
     switch (type.basetype) {
         case OIIO::TypeDesc::UINT8:
         case OIIO::TypeDesc::INT8: return Image::Storage::kUint8;

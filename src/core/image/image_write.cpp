@@ -43,7 +43,7 @@ void add_metadata(OIIO::ImageSpec& spec, const std::map<std::string, std::string
             spec.attribute(name, value);
 }
 
-Bytes encode(const char* format, const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const void* pixels) {
+Bytes encode(const char* format, const OIIO::ImageSpec& spec, const OIIO::TypeDesc& type, const void* pixels) {
     const std::string name = std::string("memory.") + format;
     Bytes buffer;
     OIIO::Filesystem::IOVecOutput memory(buffer);
