@@ -5,7 +5,8 @@
 #include "core/scene/scene.h"
 
 #include <cstring>
-#include <initializer_list>
+#include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -75,12 +76,17 @@ struct TextureScene {
     std::vector<Answer> run(const std::string& backend, const char* file, const std::vector<Probe>& probes) {
         if (scene.texture_ops.empty()) scene.texture_ops.resize(1);
         if (scene.materials.empty()) add_material(kernel::MATERIAL_DIFFUSE);
-        const std::unique_ptr<Device> device = create_device(backend);
+        // One device and one compiled kernel for all runs: a shader takes seconds to compile.
+        static std::map<std::string, std::unique_ptr<Device>> devices;
+        static std::map<std::pair<std::string, std::string>, KernelHandle> kernels;
+        std::unique_ptr<Device>& device = devices[backend];
+        if (!device) device = create_device(backend);
+        KernelHandle& kernel = kernels[{backend, file}];
+        if (!kernel) kernel = device->compile(file, kernel::kAllEffects);
         const DeviceSceneHandle uploaded = device->upload(scene);
         const BufferHandle in = device->create_buffer(probes.size() * sizeof(Probe), "probes");
         const BufferHandle out = device->create_buffer(probes.size() * sizeof(Answer), "answers");
         in->upload(probes.data(), probes.size() * sizeof(Probe));
-        const KernelHandle kernel = device->compile(file, kernel::kAllEffects);
         const BufferHandle buffers[] = {in, out};
         device->run(*kernel, uploaded.get(), buffers, 0, uint32_t(probes.size()));
         std::vector<Answer> answers(probes.size());
