@@ -39,6 +39,7 @@ Rendered render_description(SceneDescription description, const RenderSettings& 
     result.image = film.image();
     result.summary = film.summary();
     result.pixels = film.pixels();
+    result.scene_samples = built.settings.samples_per_pixel;
     result.width = result.image.width;
     result.height = result.image.height;
     return result;

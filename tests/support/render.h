@@ -30,6 +30,7 @@ struct Rendered {
     FilmSummary summary;
     std::vector<kernel::FilmPixel> pixels;
     int width = 0, height = 0;
+    int scene_samples = 0;  // samples per pixel that the scene file asks for
     float value(int x, int y, int channel) const { return image.at(x, y, channel); }
     double luminance(int x, int y) const;
     double luminance_variance(int x, int y) const;  // of the pixel's mean; channels taken as fully correlated

@@ -2,12 +2,15 @@
 #include "core/error.h"
 #include "core/image/image_io.h"
 #include "core/image/pfm.h"
+#include "core/image/primaries.h"
 
 #include <fmt/format.h>
+#include <glm/glm.hpp>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -78,6 +81,24 @@ void check_plausible(const std::string& path, const OIIO::ImageSpec& spec) {
                                spec.width, spec.height, spec.nchannels, held));
 }
 
+// Colour of an EXR with other primaries than Rec.709's (its attribute "chromaticities") becomes Rec.709's.
+void make_rec709(Image& image, const OIIO::ImageSpec& spec) {
+    float c[8];
+    if (!spec.getattribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), c)) return;
+    const Primaries primaries{{c[0], c[1]}, {c[2], c[3]}, {c[4], c[5]}, {c[6], c[7]}};
+    const glm::dmat3 matrix = rec709_from_rgb(primaries);
+    const int r = image.find_channel("R"), g = image.find_channel("G"), b = image.find_channel("B");
+    double off = 0.0;
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k) off = std::max(off, std::abs(matrix[i][k] - (i == k ? 1.0 : 0.0)));
+    if (r < 0 || g < 0 || b < 0 || !std::isfinite(off) || off < 1e-3) return;
+    for (size_t i = 0; i < image.pixel_count(); ++i) {
+        float* p = &image.pixels[i * size_t(image.channels)];
+        const glm::dvec3 rgb = matrix * glm::dvec3(p[r], p[g], p[b]);
+        p[r] = float(rgb.x), p[g] = float(rgb.y), p[b] = float(rgb.z);
+    }
+}
+
 Image read_with_openimageio(const std::string& path) {
     OIIO::ImageSpec hints;
     hints["oiio:UnassociatedAlpha"] = 1;  // do not multiply colour by alpha
@@ -94,6 +115,7 @@ Image read_with_openimageio(const std::string& path) {
         fail(path, reason(input->geterror(), path));
     image.storage = storage_of(spec.format);
     const bool is_integer = !spec.format.is_floating_point();
+    if (!is_integer) make_rec709(image, spec);
     if (std::string_view(input->format_name()) == "openexr") {
         // OpenImageIO maps unsigned integers to 0..1; in an EXR they are numbers of things.
         for (int c = 0; c < spec.nchannels; ++c)

@@ -1,5 +1,7 @@
 #include "core/scene/spectrum.h"
 
+#include "core/image/primaries.h"
+
 #include <glm/glm.hpp>
 
 #include <algorithm>
@@ -9,24 +11,9 @@ namespace lampyris {
 
 namespace {
 
-// The matrix from linear RGB with these primaries and white point (x, y chromaticities) to XYZ with the white's Y = 1:
-// SMPTE RP 177-1993, section 3.3.
-struct Primaries {
-    glm::dvec2 r, g, b, white;
-};
-constexpr glm::dvec2 kD65{0.3127, 0.3290};
-constexpr Primaries kRec709{{0.64, 0.33}, {0.30, 0.60}, {0.15, 0.06}, kD65};
 constexpr Primaries kRec2020{{0.708, 0.292}, {0.170, 0.797}, {0.131, 0.046}, kD65};
 constexpr Primaries kDciP3{{0.680, 0.320}, {0.265, 0.690}, {0.150, 0.060}, kD65};
 constexpr Primaries kAces{{0.7347, 0.2653}, {0.0, 1.0}, {0.0001, -0.077}, {0.32168, 0.33767}};
-
-glm::dvec3 xyz_of(glm::dvec2 xy) { return {xy.x / xy.y, 1.0, (1.0 - xy.x - xy.y) / xy.y}; }
-
-glm::dmat3 xyz_from_rgb(const Primaries& p) {
-    const glm::dmat3 columns(xyz_of(p.r), xyz_of(p.g), xyz_of(p.b));
-    const glm::dvec3 scale = glm::inverse(columns) * xyz_of(p.white);
-    return glm::dmat3(columns[0] * scale.x, columns[1] * scale.y, columns[2] * scale.z);
-}
 
 // Bradford's chromatic adaptation (as in ICC.1:2010, annex E).
 glm::dmat3 adapt(glm::dvec2 from, glm::dvec2 to) {
