@@ -150,6 +150,8 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
     size_t best_distance = 2 * std::max<size_t>(1, word.size() / 3) + 1;
     for (const std::string& candidate : candidates) {
         if (candidate.empty() || candidate.size() > kMaxWord) continue;
+        const size_t longer = std::max(word.size(), candidate.size()), shorter = std::min(word.size(), candidate.size());
+        if (2 * (longer - shorter) >= best_distance) continue;
         const size_t distance = distance_in_halves(word, candidate);
         if (distance < best_distance) {
             best_distance = distance;
