@@ -44,7 +44,8 @@ FN vec3 dielectric_eval(vec2 alpha, float eta_up, vec3 wo, vec3 wi, uint transpo
     float di_m = dot3(i, m);
     // Microfacets seen from behind scatter nothing.
     if (!(do_m > 0.0f) || (di_m > 0.0f) != reflected) return vec3(0.0f);
-    float r = fresnel_dielectric(do_m, eta);
+    // The refracted cosine is known: near total reflection it is more accurate than what follows from the other.
+    float r = reflected ? fresnel_dielectric(do_m, eta) : fresnel_of_cosines(do_m, -di_m, eta);
     float choice = dielectric_choice(r, lobes);
     float d = ggx_d(m, alpha);
     if (reflected) {

@@ -24,8 +24,11 @@ FN bool base_sample(IN(Bsdf) b, vec3 wo, vec2 u, INOUT(BsdfSample) s) {
 
 // ---- Small things ----------------------------------------------------------------------------------------------------
 
+// Zeros of either sign are the same direction.
 FN uint hash_direction(vec3 w) {
-    return hash_combine(hash_combine(floatBitsToUint(w.x), floatBitsToUint(w.y)), floatBitsToUint(w.z));
+    uint x = w.x == 0.0f ? 0u : floatBitsToUint(w.x);
+    uint y = w.y == 0.0f ? 0u : floatBitsToUint(w.y);
+    return hash_combine(hash_combine(x, y), floatBitsToUint(w.z));
 }
 FN vec2 rng_float2(INOUT(Rng) rng) {
     float x = rng_float(rng);

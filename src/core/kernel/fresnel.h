@@ -10,15 +10,19 @@ FN float refracted_cosine_squared(float cos_i, float eta) {
     return ((eta - 1.0f) * (eta + 1.0f) + cos_i * cos_i) / (eta * eta);
 }
 
-// Reflected share of the power at a dielectric (pbrt, 4th edition, equation 9.6); 1 at total internal reflection.
+// Reflected share of the power at a dielectric, from the cosines on both sides, which are not both 0 (pbrt, 4th edition,
+// equation 9.6).
+FN float fresnel_of_cosines(float cos_i, float cos_t, float eta) {
+    float parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
+    float perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
+    return 0.5f * (parallel * parallel + perpendicular * perpendicular);
+}
+
+// The same from the cosine of incidence; 1 at total internal reflection.
 FN float fresnel_dielectric(float cos_i, float eta) {
     float c = clamp(cos_i, 0.0f, 1.0f);
     float cos2_t = refracted_cosine_squared(c, eta);
-    if (!(cos2_t > 0.0f)) return 1.0f;
-    float cos_t = sqrt(cos2_t);
-    float parallel = (eta * c - cos_t) / (eta * c + cos_t);
-    float perpendicular = (c - eta * cos_t) / (c + eta * cos_t);
-    return 0.5f * (parallel * parallel + perpendicular * perpendicular);
+    return cos2_t > 0.0f ? fresnel_of_cosines(c, sqrt(cos2_t), eta) : 1.0f;
 }
 
 // Reflected share of the power at a conductor of index n + ik, one channel (Born and Wolf, section 14.2, with the
@@ -27,9 +31,9 @@ FN float fresnel_conductor1(float cos_i, float n, float k) {
     float c = clamp(cos_i, 0.0f, 1.0f);
     float cos2 = c * c;
     float sin2 = (1.0f - c) * (1.0f + c);
-    float n2 = n * n;
     float k2 = k * k;
-    float difference = n2 - k2 - sin2;
+    float difference = (n - 1.0f) * (n + 1.0f) + cos2 - k2;  // where digits of n^2 - sin^2 would cancel
+
     float product = 2.0f * n * k;
     float sum = sqrt(difference * difference + product * product);  // a^2 + b^2
     // (sum + difference) / 2, or the same over its conjugate where the two cancel.
@@ -56,7 +60,7 @@ FN bool refract_direction(vec3 w, vec3 n, float cos_i, float eta, OUT(vec3) refr
     refracted = vec3(0.0f, 0.0f, -1.0f);
     float cos2_t = refracted_cosine_squared(cos_i, eta);
     if (!(cos2_t > 0.0f)) return false;
-    refracted = (cos_i / eta - sqrt(cos2_t)) * n - w / eta;
+    refracted = unit((cos_i / eta - sqrt(cos2_t)) * n - w / eta);
     return true;
 }
 
