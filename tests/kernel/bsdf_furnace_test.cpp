@@ -184,7 +184,7 @@ TEST(BsdfFurnace, RoughMaterialsMatchQuadrature) {
                 std::string what = backend + ", " + m.name + " at cosine " + std::to_string(c);
                 EXPECT_NEAR(e.reflected.value(), albedo.reflected, z * e.reflected.error() + slack) << what;
                 EXPECT_NEAR(e.transmitted.value(), albedo.transmitted, z * e.transmitted.error() + slack) << what;
-                EXPECT_NEAR(evaluated_energy(prober, probe), albedo.reflected + albedo.transmitted, 1e-3) << what;
+                EXPECT_NEAR(evaluated_energy(prober, probe), albedo.reflected + albedo.transmitted, 2e-3) << what;
             }
         }
     }
