@@ -1,0 +1,157 @@
+// lampyris describe SCENE: what the scene calls for, who asks for it, and what it costs.
+#include "commands/command.h"
+#include "core/error.h"
+#include "core/scene/load.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+
+namespace lampyris {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kSchema = "lampyris.describe/1";
+
+struct DescribeOptions {
+    std::string scene;
+    bool json = false, skip_unsupported = false;
+};
+
+struct Counts {
+    size_t triangles = 0, patches = 0, quadrics = 0, triangles_with_instances = 0, memory = 0;
+};
+
+template <typename T>
+size_t bytes_of(const std::vector<T>& values) { return values.size() * sizeof(T); }
+
+Counts count(const Scene& scene) {
+    Counts counts;
+    std::vector<size_t> triangles_of_set;
+    for (const GeometrySet& set : scene.sets) {
+        size_t triangles = 0;
+        for (uint32_t i = set.first_geometry; i < set.first_geometry + set.geometry_count; ++i) {
+            const kernel::GeometryRecord& geometry = scene.geometries[i];
+            size_t& kind = geometry.data.x == kernel::GEOMETRY_TRIANGLES  ? triangles
+                           : geometry.data.x == kernel::GEOMETRY_BILINEAR ? counts.patches
+                                                                          : counts.quadrics;
+            kind += geometry.attributes.z;
+        }
+        triangles_of_set.push_back(triangles);
+        counts.triangles += triangles;
+    }
+    for (const uint32_t set : scene.instance_sets) counts.triangles_with_instances += triangles_of_set[set];
+    counts.memory = bytes_of(scene.geometries) + bytes_of(scene.indices) + bytes_of(scene.positions) + bytes_of(scene.normals) +
+                    bytes_of(scene.uvs) + bytes_of(scene.transforms) + bytes_of(scene.instances) + bytes_of(scene.materials) +
+                    bytes_of(scene.texture_ops) + bytes_of(scene.images) + bytes_of(scene.texels) + bytes_of(scene.lights) +
+                    bytes_of(scene.distributions);
+    return counts;
+}
+
+const EffectRequest* request_of(const Effects& effects, uint32_t effect) {
+    for (const EffectRequest& request : effects.requests())
+        if (request.effect == effect) return &request;
+    return nullptr;
+}
+
+void print_table(const LoadedScene& loaded) {
+    const Scene& scene = loaded.scene;
+    const Counts counts = count(scene);
+    const std::array<int, 4>& crop = loaded.settings.crop;
+    fmt::print("scene        {}\n", scene.name);
+    fmt::print("picture      {}x{}", scene.width(), scene.height());
+    if (crop != std::array<int, 4>{0, 0, int(scene.width()), int(scene.height())})
+        fmt::print(", of which {},{} to {},{}", crop[0], crop[1], crop[2], crop[3]);
+    fmt::print(", {} samples a pixel ({})\n", loaded.settings.samples_per_pixel, loaded.settings.sampler);
+    fmt::print("integrator   {}\n", loaded.settings.integrator.type);
+    fmt::print("shapes       {} triangles, {} patches, {} quadrics in {} geometries; {} instances", counts.triangles, counts.patches,
+               counts.quadrics, scene.geometries.size(), scene.instances.size() - 1);
+    if (scene.instances.size() > 1) fmt::print(" ({} triangles in all)", counts.triangles_with_instances);
+    fmt::print("\nlights       {}, of which {} infinite\n", scene.lights.size(), scene.record.lights.y);
+    fmt::print("materials    {}; {} texture operations, {} images\n", scene.materials.size(), scene.texture_ops.size(), scene.images.size());
+    fmt::print("memory       {:.1f} MB before acceleration structures\n\n", double(counts.memory) * 1e-6);
+
+    size_t name_width = 6, asked_width = 8;
+    for (const EffectInfo& info : known_effects()) name_width = std::max(name_width, std::string_view(info.name).size());
+    for (const EffectRequest& request : scene.effects.requests()) asked_width = std::max(asked_width, request.asked_by.size());
+    fmt::print("{:<{}}  {:<9}  {:<{}}  {}\n", "effect", name_width, "simulated", "asked by", asked_width, "cost");
+    for (const EffectInfo& info : known_effects())
+        if (const EffectRequest* request = request_of(scene.effects, info.effect))
+            fmt::print("{:<{}}  {:<9}  {:<{}}  {}\n", info.name, name_width, "yes", request->asked_by, asked_width, info.cost);
+    for (const std::string& what : scene.unsupported) fmt::print("{:<{}}  {:<9}  {}\n", "(unsupported)", name_width, "no", what);
+    std::string rest;
+    for (const EffectInfo& info : known_effects())
+        if (!request_of(scene.effects, info.effect)) rest += fmt::format("{}{}", rest.empty() ? "" : ", ", info.name);
+    if (!rest.empty()) fmt::print("\nnot called for, and left out: {}\n", rest);
+    for (const std::string& note : scene.notes) fmt::print("note: {}\n", note);
+}
+
+void print_json(const LoadedScene& loaded) {
+    const Scene& scene = loaded.scene;
+    const Counts counts = count(scene);
+    Json json;
+    json["schema"] = kSchema;
+    json["scene"] = scene.name;
+    json["scene_hash"] = fmt::format("{:016x}", scene.hash);
+    json["resolution"] = {scene.width(), scene.height()};
+    json["crop"] = loaded.settings.crop;
+    json["samples_per_pixel"] = loaded.settings.samples_per_pixel;
+    json["sampler"] = loaded.settings.sampler;
+    json["integrator"] = loaded.settings.integrator.type;
+    json["triangles"] = counts.triangles;
+    json["triangles_with_instances"] = counts.triangles_with_instances;
+    json["patches"] = counts.patches;
+    json["quadrics"] = counts.quadrics;
+    json["geometries"] = scene.geometries.size();
+    json["instances"] = scene.instances.size() - 1;
+    json["lights"] = scene.lights.size();
+    json["infinite_lights"] = scene.record.lights.y;
+    json["materials"] = scene.materials.size();
+    json["texture_operations"] = scene.texture_ops.size();
+    json["images"] = scene.images.size();
+    json["memory_bytes"] = counts.memory;
+    json["parse_s"] = loaded.parse_s;
+    json["build_s"] = loaded.build_s;
+    json["effects"] = Json::array();
+    for (const EffectInfo& info : known_effects()) {
+        const EffectRequest* request = request_of(scene.effects, info.effect);
+        Json effect;
+        effect["name"] = info.name;
+        effect["asked_by"] = request ? Json(request->asked_by) : Json(nullptr);
+        effect["simulated"] = request != nullptr;
+        effect["cost"] = info.cost;
+        json["effects"].push_back(effect);
+    }
+    json["unsupported"] = scene.unsupported;
+    json["notes"] = scene.notes;
+    json["warnings"] = loaded.warnings;
+    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+}
+
+int describe(const DescribeOptions& options) {
+    const LoadedScene loaded = load_scene(options.scene, {}, options.skip_unsupported);
+    for (const std::string& warning : loaded.warnings) fmt::print(stderr, "{}\n", warning);
+    if (options.json)
+        print_json(loaded);
+    else
+        print_table(loaded);
+    return int(ExitCode::kDone);
+}
+
+void add_describe(CLI::App& parent, std::function<int()>& run) {
+    auto options = std::make_shared<DescribeOptions>();
+    CLI::App* command = parent.add_subcommand("describe", "Tell what a scene calls for, who asks for it, and what it costs");
+    command->add_option("SCENE", options->scene, "a pbrt-v4 scene file")->required();
+    command->add_flag("--json", options->json, "print JSON (docs/describe.md)");
+    command->add_flag("--skip-unsupported", options->skip_unsupported, "leave out what is not supported, instead of failing");
+    command->callback([&run, options] { run = [options] { return describe(*options); }; });
+}
+
+REGISTER_COMMAND(add_describe);
+
+}  // namespace
+}  // namespace lampyris

@@ -1,0 +1,186 @@
+// From a scene's text to its arrays: orientation, baking, order, what asks for which effect.
+#include "support/build_text.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace lampyris {
+namespace {
+
+using namespace kernel;
+
+const char* kTriangle = "Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer indices\" [ 0 1 2 ]\n";
+
+TEST(BuildScene, CornellBoxInSmall) {
+    const BuiltText text = build_text(R"(
+Integrator "path" "integer maxdepth" 65
+Transform [ 1 0 0 0 0 1 0 0 0 0 -1 0 0 -1 6.8 1 ]
+Sampler "sobol" "integer pixelsamples" 64
+PixelFilter "triangle" "float xradius" 1 "float yradius" 1
+Film "rgb" "string filename" "box.png" "integer yresolution" 512 "integer xresolution" 1024
+Camera "perspective" "float fov" 19.5
+WorldBegin
+MakeNamedMaterial "Wall" "string type" "diffuse" "rgb reflectance" [ 0.63 0.065 0.05 ]
+NamedMaterial "Wall"
+Shape "trianglemesh" "point2 uv" [ 0 0 1 0 1 1 0 1 ] "normal N" [ 0 1 0 0 1 0 0 1 0 0 1 0 ]
+    "point3 P" [ -1 0 -1 -1 0 1 1 0 1 1 0 -1 ] "integer indices" [ 0 1 2 0 2 3 ]
+AttributeBegin
+AreaLightSource "diffuse" "rgb L" [ 17 12 4 ]
+Shape "trianglemesh" "point3 P" [ -1 2 -1 1 2 -1 1 2 1 ] "integer indices" [ 0 1 2 ]
+AttributeEnd
+)");
+    ASSERT_EQ(text.all_errors(), "");
+    const Scene& scene = text.scene();
+    ASSERT_EQ(scene.geometries.size(), 2u);
+    EXPECT_EQ(scene.geometries[0].data, uvec4(GEOMETRY_TRIANGLES, GEOMETRY_HAS_NORMALS | GEOMETRY_HAS_UVS, 0u, 0u));
+    EXPECT_EQ(scene.geometries[0].attributes.z, 2u);
+    EXPECT_EQ(scene.geometries[0].ids.y, NONE);
+    EXPECT_EQ(scene.geometries[1].data, uvec4(GEOMETRY_TRIANGLES, 0u, 6u, 4u));
+    EXPECT_EQ(scene.geometries[1].attributes.x, NONE);
+    ASSERT_EQ(scene.lights.size(), 1u);
+    EXPECT_EQ(scene.geometries[1].ids.y, 0u);
+    EXPECT_EQ(scene.lights[0].data.x, LIGHT_TRIANGLE);
+    EXPECT_EQ(scene.lights[0].emission, vec4(17.0f, 12.0f, 4.0f, 1.0f));
+    EXPECT_FLOAT_EQ(scene.lights[0].v0.w, 2.0f);
+    EXPECT_EQ(scene.positions.size(), 7u * 3u + 4u);
+    ASSERT_EQ(scene.materials.size(), 1u);
+    EXPECT_EQ(vec3(scene.materials[0].color0), vec3(0.63f, 0.065f, 0.05f));
+    EXPECT_EQ(scene.width(), 1024u);
+    EXPECT_EQ(text.built.settings.integrator.type, "path");
+    EXPECT_EQ(text.built.settings.samples_per_pixel, 64);
+    EXPECT_EQ(text.built.settings.sampler, "sobol");
+    EXPECT_EQ(text.built.settings.output, "box.png");
+    // The field of view is that of the shorter side, here the height.
+    const float half = std::tan(19.5f * std::numbers::pi_v<float> / 360.0f);
+    EXPECT_NEAR(scene.record.camera.screen.y, half, 1e-6f);
+    EXPECT_NEAR(scene.record.camera.screen.x, -2.0f * half, 1e-6f);
+    EXPECT_NEAR(scene.record.camera.screen.w, -2.0f * half / 512.0f, 1e-8f);
+    EXPECT_EQ(scene.effects.mask(), EFFECT_SMOOTH_NORMALS | EFFECT_AREA_LIGHTS);
+    EXPECT_EQ(scene.effects.requests()[0].asked_by, "test.pbrt:11:1 (Shape \"trianglemesh\")");
+}
+
+TEST(BuildScene, OrientationFollowsReverseAndHandedness) {
+    const BuiltText text = build_world(std::string("AttributeBegin\nScale -1 1 1\n") + kTriangle + "AttributeEnd\nAttributeBegin\nReverseOrientation\n" +
+                                       kTriangle + "AttributeEnd\nAttributeBegin\nReverseOrientation\nScale 1 1 -1\nShape \"sphere\"\nAttributeEnd\n");
+    ASSERT_EQ(text.all_errors(), "");
+    const auto& geometries = text.scene().geometries;
+    EXPECT_EQ(geometries[0].data.y, GEOMETRY_FLIP);
+    EXPECT_EQ(geometries[1].data.y, GEOMETRY_FLIP | GEOMETRY_REVERSED);
+    EXPECT_EQ(geometries[2].data.y, GEOMETRY_REVERSED);
+    EXPECT_EQ(text.scene().positions[3], -1.0f);
+}
+
+TEST(BuildScene, NormalsGoByTheInverseTransposeAndTheReversal) {
+    const BuiltText text = build_world("Scale 2 1 1\nReverseOrientation\nShape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"normal N\" [ 1 0 0 0 1 0 0 0 1 ]");
+    ASSERT_EQ(text.all_errors(), "");
+    EXPECT_EQ(text.scene().normals, (std::vector<float>{-0.5f, 0, 0, 0, -1, 0, 0, 0, -1}));
+}
+
+TEST(BuildScene, InfiniteLightsComeFirst) {
+    const BuiltText text = build_world(std::string("LightSource \"point\" \"rgb I\" [ 1 2 3 ]\nAttributeBegin\nAreaLightSource \"diffuse\"\n") + kTriangle +
+                                       "AttributeEnd\nLightSource \"infinite\" \"rgb L\" [ 0.5 0.5 0.5 ]\n");
+    ASSERT_EQ(text.all_errors(), "");
+    const Scene& scene = text.scene();
+    ASSERT_EQ(scene.lights.size(), 3u);
+    EXPECT_EQ(scene.record.lights.y, 1u);
+    EXPECT_EQ(scene.lights[0].data.x, LIGHT_INFINITE);
+    EXPECT_EQ(scene.lights[scene.geometries[0].ids.y].data.x, LIGHT_TRIANGLE);
+    float sum = 0.0f;
+    for (const LightRecord& light : scene.lights) sum += light.emission.w;
+    EXPECT_NEAR(sum, 1.0f, 1e-6f);
+}
+
+TEST(BuildScene, InstancesShareTheirSet) {
+    const BuiltText text = build_world(std::string("ObjectBegin \"o\"\nTranslate 0 0 1\n") + kTriangle + "Shape \"sphere\"\nObjectEnd\n" + kTriangle +
+                                       "ObjectBegin \"empty\"\nObjectEnd\nObjectInstance \"o\"\nAttributeBegin\nScale 1 -2 1\nObjectInstance \"o\"\nAttributeEnd\nObjectInstance \"empty\"\n");
+    ASSERT_EQ(text.all_errors(), "");
+    const Scene& scene = text.scene();
+    ASSERT_EQ(scene.instances.size(), 3u);
+    EXPECT_EQ(scene.instances[0].data, uvec4(0u, 1u, NONE, 0u));
+    EXPECT_EQ(scene.instances[1].data, uvec4(1u, 2u, NONE, 0u));
+    EXPECT_EQ(scene.instances[2].data.w, 1u);
+    EXPECT_EQ(scene.instance_sets, (std::vector<uint32_t>{0, 1, 1}));
+    EXPECT_EQ(scene.instances[2].transform.to1, vec4(0.0f, -2.0f, 0.0f, 0.0f));
+    EXPECT_EQ(scene.instances[2].transform.from1, vec4(0.0f, -0.5f, 0.0f, 0.0f));
+    EXPECT_TRUE(scene.effects.has(EFFECT_INSTANCES));
+    // Everything, quadrics and instances: x and y from -1 and -2 to 1 and 2, z from 0 to 2.
+    EXPECT_NEAR(scene.record.bounds.w, std::sqrt(1.0f + 4.0f + 1.0f), 1e-5f);
+}
+
+TEST(BuildScene, ExposureAndCrop) {
+    const BuiltText text = build_text("Camera \"orthographic\" \"float shutterclose\" 0.5\nFilm \"rgb\" \"float iso\" 400 \"float maxcomponentvalue\" 10 "
+                                      "\"integer xresolution\" 200 \"integer yresolution\" 100 \"float cropwindow\" [ 0.25 0.5 0 0.1 ]\nWorldBegin\n");
+    ASSERT_EQ(text.all_errors(), "");
+    const CameraRecord& camera = text.scene().record.camera;
+    EXPECT_FLOAT_EQ(camera.lens.w, 2.0f);
+    EXPECT_EQ(camera.lens.z, 10.0f);
+    EXPECT_EQ(text.built.settings.crop, (std::array<int, 4>{50, 0, 100, 10}));
+    EXPECT_EQ(camera.screen.x, -2.0f);  // the shorter side is -1 to 1
+    BuildOptions options;
+    options.resolution = {{20, 10}};
+    const BuiltText smaller = build_text("Camera \"orthographic\"\nFilm \"rgb\" \"integer xresolution\" 200 \"integer yresolution\" 100 \"float cropwindow\" [ 0.25 0.5 0 0.1 ]\nWorldBegin\n", false, options);
+    EXPECT_EQ(smaller.built.settings.crop, (std::array<int, 4>{5, 0, 10, 1}));
+    EXPECT_EQ(smaller.scene().width(), 20u);
+}
+
+TEST(BuildScene, LightUnitsArePbrts) {
+    const BuiltText text = build_world(R"(
+AttributeBegin
+LightSource "point" "blackbody I" 5000 "float scale" 3
+LightSource "point" "rgb I" [ 2 2 2 ] "float power" 12.566370614
+LightSource "spot" "float coneangle" 60 "float conedeltaangle" 0 "float power" 1
+LightSource "distant" "float illuminance" 7 "rgb L" [ 1 1 1 ] "point3 from" [ 0 0 2 ] "point3 to" [ 0 0 1 ]
+LightSource "infinite" "float illuminance" 3.14159265
+AttributeEnd
+)");
+    ASSERT_EQ(text.all_errors(), "");
+    const auto& lights = text.scene().lights;
+    const auto luminance = [](vec4 e) { return 0.2126f * e.x + 0.7152f * e.y + 0.0722f * e.z; };
+    EXPECT_NEAR(luminance(lights[0].emission), 1.0f, 1e-5f);   // infinite: pi lux from a whole hemisphere is a radiance of 1
+    EXPECT_NEAR(luminance(lights[1].emission), 3.0f, 3e-3f);   // a spectrum has luminance one
+    EXPECT_GT(lights[1].emission.x, lights[1].emission.z);     // and 5000 K is warmer than D65
+    EXPECT_NEAR(luminance(lights[2].emission), 2.0f, 1e-4f);   // 4 pi lumens from an rgb of 2: as pbrt-v4, twice that
+    EXPECT_NEAR(luminance(lights[3].emission), 1.0f / std::numbers::pi_v<float>, 1e-5f);  // 2 pi (1 - cos 60) = pi
+    EXPECT_NEAR(luminance(lights[4].emission), 7.0f, 1e-4f);
+    EXPECT_EQ(lights[4].v0, vec4(0.0f, 0.0f, 1.0f, 0.0f));
+}
+
+TEST(BuildScene, MaterialsAndTheirEffects) {
+    const BuiltText text = build_world(std::string(R"(
+MakeNamedMaterial "unused" "string type" "dielectric"
+MakeNamedMaterial "gold" "string type" "conductor" "spectrum eta" "metal-Au-eta" "spectrum k" "metal-Au-k" "float uroughness" 0.1
+MakeNamedMaterial "plastic" "string type" "coateddiffuse" "float roughness" 0.3 "bool remaproughness" false
+MakeNamedMaterial "both" "string type" "mix" "string materials" [ "gold" "plastic" ] "float amount" 0.25
+NamedMaterial "both"
+)") + kTriangle);
+    ASSERT_EQ(text.all_errors(), "");
+    const auto& materials = text.scene().materials;
+    ASSERT_EQ(materials.size(), 3u);
+    const MaterialRecord& mix = materials[text.scene().geometries[0].ids.x];
+    EXPECT_EQ(mix.data.x, MATERIAL_MIX);
+    EXPECT_EQ(mix.floats.x, 0.25f);
+    const MaterialRecord& gold = materials[mix.extra.x];
+    EXPECT_EQ(gold.data.x, MATERIAL_CONDUCTOR);
+    EXPECT_EQ(gold.data.y, MATERIAL_REMAP);
+    EXPECT_EQ(gold.floats.x, 0.1f);
+    EXPECT_EQ(gold.floats.y, 0.0f);
+    // Gold reflects red far better than blue.
+    const auto reflectance = [&](int c) {
+        const float n = gold.color0[c], k = gold.color1[c];
+        return ((n - 1) * (n - 1) + k * k) / ((n + 1) * (n + 1) + k * k);
+    };
+    EXPECT_GT(reflectance(0), 0.95f);
+    EXPECT_NEAR(reflectance(1), 0.78f, 0.02f);
+    EXPECT_NEAR(reflectance(2), 0.34f, 0.02f);
+    const MaterialRecord& plastic = materials[mix.extra.y];
+    EXPECT_EQ(plastic.data.y, 0u);
+    EXPECT_EQ(plastic.floats, vec4(0.3f, 0.3f, 1.5f, 0.0f));
+    EXPECT_EQ(plastic.floats2.x, 0.01f);
+    EXPECT_EQ(plastic.extra.x, 10u);
+    EXPECT_EQ(text.scene().effects.mask(), EFFECT_MIX | EFFECT_CONDUCTOR | EFFECT_ROUGH | EFFECT_COAT | EFFECT_DIELECTRIC);
+}
+
+}  // namespace
+}  // namespace lampyris

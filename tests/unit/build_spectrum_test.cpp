@@ -1,0 +1,85 @@
+// Spectra to linear Rec.709.
+#include "core/scene/spectrum.h"
+
+#include <glm/glm.hpp>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace lampyris {
+namespace {
+
+void expect_near(glm::vec3 a, glm::vec3 b, float tolerance) {
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], tolerance) << "channel " << c;
+}
+
+TEST(Spectrum, WhiteIsWhite) {
+    expect_near(reflectance_rgb([](float) { return 0.5f; }), glm::vec3(0.5f), 1e-6f);
+    expect_near(light_rgb(illuminant_d65), glm::vec3(1.0f), 2e-3f);
+}
+
+// The observer's integral of each function is 106.857 at 1 nm (CIE 15:2004: equal energy is X = Y = Z).
+TEST(Spectrum, ObserverIsNormalized) {
+    glm::vec3 sum(0.0f);
+    for (float w = kFirstWavelength; w <= kLastWavelength; w += 1.0f) sum += cie_xyz(w);
+    expect_near(sum, glm::vec3(106.857f), 0.1f);
+    EXPECT_EQ(cie_xyz(555.0f).y, 1.0f);
+    EXPECT_EQ(cie_xyz(200.0f), glm::vec3(0.0f));
+}
+
+TEST(Spectrum, BlackBodyPeaksWhereWienSays) {
+    for (const float kelvin : {3000.0f, 5000.0f, 6500.0f}) {
+        const float peak = 2.8977721e6f / kelvin;
+        EXPECT_NEAR(blackbody(peak, kelvin), 1.0f, 1e-5f);
+        EXPECT_LT(blackbody(peak * 1.1f, kelvin), 1.0f);
+        EXPECT_LT(blackbody(peak * 0.9f, kelvin), 1.0f);
+    }
+    // Illuminant A's chromaticity is (0.44757, 0.40745) (CIE 15:2004).
+    glm::vec3 xyz(0.0f);
+    for (float w = kFirstWavelength; w <= kLastWavelength; w += 1.0f) xyz += cie_xyz(w) * named_spectrum("stdillum-A")->at(w);
+    EXPECT_NEAR(xyz.x / (xyz.x + xyz.y + xyz.z), 0.44757f, 5e-4f);
+    EXPECT_NEAR(xyz.y / (xyz.x + xyz.y + xyz.z), 0.40745f, 5e-4f);
+}
+
+TEST(Spectrum, Rec709FromXyzIsTheStandards) {
+    // Rec. ITU-R BT.709-6: the luminance of red, green and blue is 0.2126, 0.7152, 0.0722.
+    expect_near(rec709_from_xyz({0.95047f, 1.0f, 1.08883f}), glm::vec3(1.0f), 1e-3f);
+    expect_near(rec709_from_xyz({0.4123908f, 0.2126390f, 0.0193308f}), {1.0f, 0.0f, 0.0f}, 1e-4f);
+}
+
+TEST(Spectrum, ColourSpacesKeepWhiteAndNestTheirGamuts) {
+    for (const char* space : {"rec2020", "dci-p3", "aces2065-1"})
+        expect_near(rec709_from(space, glm::vec3(0.7f), SpectrumUse::kAlbedo), glm::vec3(0.7f), 1e-5f);
+    // ITU-R BT.2087: Rec.2020's red lies outside of Rec.709.
+    expect_near(rec709_from("rec2020", {1.0f, 0.0f, 0.0f}, SpectrumUse::kAlbedo), {1.6605f, -0.1246f, -0.0182f}, 1e-3f);
+    // The white of ACES is warmer than D65; a light keeps that.
+    const glm::vec3 aces = rec709_from("aces2065-1", glm::vec3(1.0f), SpectrumUse::kLight);
+    EXPECT_GT(aces.x, aces.z);
+}
+
+TEST(Spectrum, MetalsReflectTheirColour) {
+    for (const char* metal : {"Ag", "Al", "Au", "Cu", "CuZn", "MgO", "TiO2"}) {
+        const SampledSpectrum* eta = named_spectrum(std::string("metal-") + metal + "-eta");
+        const SampledSpectrum* k = named_spectrum(std::string("metal-") + metal + "-k");
+        ASSERT_NE(eta, nullptr) << metal;
+        ASSERT_NE(k, nullptr) << metal;
+        const auto reflectance = [](float n, float a) { return ((n - 1) * (n - 1) + a * a) / ((n + 1) * (n + 1) + a * a); };
+        const ConductorRgb rgb = conductor_rgb(*eta, *k);
+        const auto at = [](const SampledSpectrum& s, float w) { return s.at(std::min(w, s.wavelengths.back())); };
+        const glm::vec3 wanted = glm::min(reflectance_rgb([&](float w) { return reflectance(at(*eta, w), at(*k, w)); }), glm::vec3(0.9999f));
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(reflectance(rgb.eta[c], rgb.k[c]), wanted[c], 1e-4f) << metal << " channel " << c;
+    }
+}
+
+TEST(Spectrum, GlassHasItsCatalogueIndex) {
+    // n_d at 587.6 nm (Schott's data sheets).
+    EXPECT_NEAR(named_spectrum("glass-BK7")->at(587.6f), 1.51680f, 2e-4f);
+    EXPECT_NEAR(named_spectrum("glass-SF11")->at(587.6f), 1.78472f, 2e-4f);
+    EXPECT_NEAR(named_spectrum("glass-F11")->at(587.6f), 1.78472f, 2e-4f);
+    EXPECT_NEAR(named_spectrum("glass-LASF9")->at(587.6f), 1.85025f, 2e-4f);
+    EXPECT_NEAR(named_spectrum("glass-BAF10")->at(587.6f), 1.67003f, 2e-4f);
+    EXPECT_NEAR(named_spectrum("glass-FK51A")->at(587.6f), 1.48656f, 2e-4f);
+}
+
+}  // namespace
+}  // namespace lampyris
