@@ -60,7 +60,7 @@ BuiltScene build_scene(SceneDescription&& description, const BuildOptions& optio
     Scene& scene = built.scene;
     struct Parts {
         Parts(SceneDescription& d, const BuildOptions& o, Scene& s, SceneSettings& t, Diagnostics& g)
-            : context{d, o, s, t, g, textures, {}, {}, {}}, textures(context) {}
+            : context{d, o, s, t, g, textures, {}, {}, {}, {}}, textures(context) {}
         BuildContext context;
         TextureBuilder textures;
     } parts(description, options, scene, built.settings, diagnostics);
@@ -70,6 +70,7 @@ BuiltScene build_scene(SceneDescription&& description, const BuildOptions& optio
     build_shapes(context);
     scene.record.bounds = bounding_sphere(scene);
     build_lights(context);
+    context.check_unused_materials();
     finish_lights(context);
     scene.record.counts = {uint32_t(scene.geometries.size()), uint32_t(scene.instances.size()), kernel::NONE, 0u};
     // Embree reads 16 bytes at every vertex, the last one included.

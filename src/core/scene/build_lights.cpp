@@ -14,6 +14,7 @@ void build_lights(BuildContext& context) {
             context.diagnostics.error(light.type_location, message, hint);
             continue;
         }
+        context.refuse_medium(light.medium);
         if (light.world_from_light.animated()) context.refuse_motion(light.world_from_light, light.location);
         ParameterReader reader(light_registry().find_info(light.type)->parameters, light, context.diagnostics);
         LightContext light_context{context, light, reader, context.place(light, "LightSource")};

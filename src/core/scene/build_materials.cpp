@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
 namespace lampyris {
 
 namespace {
@@ -31,6 +34,20 @@ bool refuse_unsupported(BuildContext& context, const MaterialDescription& materi
 }
 
 }  // namespace
+
+void BuildContext::check_unused_materials() {
+    for (uint32_t i = 0; i < description.materials.size(); ++i) {
+        MaterialDescription& material = description.materials[i];
+        if (built_materials.contains(i) || material.type.empty() || material.type == "none") continue;
+        if (const PluginInfo* info = material_registry().find_info(material.type)) {
+            for (const ParameterSpec& spec : info->parameters) material.parameters.find(spec.name);
+            material.parameters.report_unused(fmt::format("material \"{}\"", material.type), spec_names(info->parameters), diagnostics);
+        } else if (std::find(std::begin(kUnsupported), std::end(kUnsupported), material.type) == std::end(kUnsupported)) {
+            const auto [message, hint] = material_registry().unknown(material.type);
+            diagnostics.error(material.type_location.known() ? material.type_location : material.location, message, hint);
+        }
+    }
+}
 
 uint32_t BuildContext::material(uint32_t description_index, const std::vector<uint32_t>& path) {
     const auto built = built_materials.find(description_index);

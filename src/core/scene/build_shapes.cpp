@@ -24,8 +24,8 @@ uint32_t ShapeContext::add_geometry(uint32_t kind, uint32_t flags, uint32_t prim
     record.alpha.x = alpha.value;
     if (alpha.texture != kNone || alpha.value < 1.0f) {
         build.ask(kernel::EFFECT_ALPHA, asked_by);
-        if (area_light)
-            build.diagnostics.unsupported(reader.location("alpha"), "alpha on an area light", "the light is sampled as if all of it were there");
+        if (area_light && alpha.texture == kNone && alpha.value == 0.0f)
+            build.diagnostics.unsupported(reader.location("alpha"), "an area light that rays pass (alpha 0)", "pbrt-v4's light without a surface; skipped, it emits nothing");
     }
     build.scene.geometries.push_back(record);
     return uint32_t(build.scene.geometries.size() - 1);
@@ -62,7 +62,8 @@ class ShapeBuilder {
             context_.diagnostics.error(shape.location, "the transform in force here cannot be inverted", "a scale by 0, or numbers out of range?");
             return;
         }
-        refuse_media(shape);
+        context_.refuse_medium(shape.interior_medium);
+        context_.refuse_medium(shape.exterior_medium);
         ParameterReader reader(shape_registry().find_info(shape.type)->parameters, shape, context_.diagnostics);
         ShapeContext context{context_, shape, reader, context_.material(shape.material), area_light(shape, in_object), in_object,
                              context_.place(shape, "Shape")};
@@ -77,14 +78,6 @@ class ShapeBuilder {
         }
         const auto [message, hint] = shape_registry().unknown(shape.type);
         context_.diagnostics.error(shape.type_location, message, hint);
-    }
-
-    void refuse_media(const ShapeDescription& shape) {
-        for (const uint32_t medium : {shape.interior_medium, shape.exterior_medium})
-            if (medium != kNone) refused_media_.insert(medium).second ? refuse_medium(context_.description.media[medium]) : void();
-    }
-    void refuse_medium(const MediumDescription& medium) {
-        context_.diagnostics.unsupported(medium.location, fmt::format("participating medium \"{}\"", medium.name), "empty space takes its place if skipped");
     }
 
     const AreaLight* area_light(const ShapeDescription& shape, bool in_object) {
@@ -107,7 +100,7 @@ class ShapeBuilder {
 
     BuildContext& context_;
     std::vector<AreaLight> area_lights_;
-    std::set<uint32_t> read_, refused_media_;
+    std::set<uint32_t> read_;
 };
 
 }  // namespace

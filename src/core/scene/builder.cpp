@@ -37,6 +37,12 @@ uint32_t BuildContext::add_transform(const glm::mat4& to, Location where) {
     return uint32_t(scene.transforms.size() - 1);
 }
 
+void BuildContext::refuse_medium(uint32_t medium) {
+    if (medium >= description.media.size() || !refused_media.insert(medium).second) return;
+    diagnostics.unsupported(description.media[medium].location, fmt::format("participating medium \"{}\"", description.media[medium].name),
+                            "empty space takes its place if skipped");
+}
+
 void BuildContext::refuse_motion(const AnimatedTransform& transform, Location where) {
     if (transform.animated())
         diagnostics.unsupported(where, "motion blur (an animated transform)", "without it, the transform at the start holds");

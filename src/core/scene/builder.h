@@ -13,6 +13,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,8 @@ struct BuildContext {
     // `path` holds the materials that are being built, outermost first: a mix must not contain itself.
     uint32_t material(uint32_t description_index, const std::vector<uint32_t>& path = {});
     std::map<uint32_t, uint32_t> built_materials;
+    // Materials that nothing uses are not built; unknown types and parameters are told all the same.
+    void check_unused_materials();
 
     // "scene.pbrt:12:1 (Material \"dielectric\")"
     std::string place(const Entity& entity, const char* directive) const;
@@ -59,6 +62,9 @@ struct BuildContext {
     std::string resolve(const std::string& filename) const;
     // Appends a transform and returns its index. Errors for a singular one are reported at `where`.
     uint32_t add_transform(const glm::mat4& to, Location where);
+    // Diagnostics::unsupported for a medium that something is in; kNone is empty space. Once for each medium.
+    void refuse_medium(uint32_t medium);
+    std::set<uint32_t> refused_media;
     // Diagnostics::unsupported if the transform moves.
     void refuse_motion(const AnimatedTransform& transform, Location where);
 };

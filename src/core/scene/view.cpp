@@ -45,6 +45,7 @@ void read_options(BuildContext& context) {
         const auto* truths = std::get_if<std::vector<uint8_t>>(&option.values);
         const bool is_on = truths && !truths->empty() && truths->front() != 0;
         if (option.name == "seed" && numbers && !numbers->empty()) {
+            if (context.description.sampler.parameters.has("seed")) continue;  // the sampler's own counts
             context.settings.seed = uint32_t(numbers->front());
         } else if (is_on && (option.name == "disablepixeljitter" || option.name == "forcediffuse")) {
             context.diagnostics.unsupported(option.location, fmt::format("option \"{}\"", option.name));
@@ -76,6 +77,7 @@ void build_view(BuildContext& context) {
         factory(filter);
     });
     CameraDescription& camera = description.camera;
+    context.refuse_medium(camera.medium);
     const std::string asked_by = context.place(camera, "Camera");
     if (camera.world_from_camera.animated()) context.refuse_motion(camera.world_from_camera, camera.location);
     const kernel::TransformRecord world = transform_record(camera.world_from_camera.matrix[0]);

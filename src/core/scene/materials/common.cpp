@@ -30,6 +30,7 @@ void read_surface_detail(MaterialContext& context) {
     if (!map.empty()) {
         context.record.data.w = context.build.textures.image(map, TextureBuilder::Content::kNormalMap, context.reader.location("normalmap"));
         context.ask(kernel::EFFECT_BUMP);
+        context.ask(kernel::EFFECT_IMAGES);
     }
 }
 
@@ -96,12 +97,14 @@ void add_conductor(ParameterSpecs& specs, const std::string& prefix) {
     specs.push_back(value(prefix + "eta", ParameterType::kSpectrum, "metal-Cu-eta", "real part of the index of refraction").textured());
     specs.push_back(value(prefix + "k", ParameterType::kSpectrum, "metal-Cu-k", "its imaginary part").textured());
     specs.push_back(value("reflectance", ParameterType::kSpectrum, "as eta and k say", "reflectance at normal incidence, instead of eta and k").textured());
+    specs.push_back(boolean("energycompensation", false, "gives back what single scattering between microfacets loses (pbrt-v4 does not)"));
 }
 
 void read_conductor(MaterialContext& context, const std::string& prefix) {
     ParameterReader& reader = context.reader;
     const std::string eta = prefix + "eta", k = prefix + "k";
     context.ask(kernel::EFFECT_CONDUCTOR);
+    if (reader.get_bool("energycompensation")) context.record.data.y |= kernel::MATERIAL_ENERGY_COMPENSATION;
     if (reader.has("reflectance")) {
         if (reader.has(eta) || reader.has(k))
             reader.error("reflectance", fmt::format("both \"reflectance\" and \"{}\" are given", reader.has(eta) ? eta : k), "one of them");
