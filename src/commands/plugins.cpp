@@ -149,7 +149,7 @@ void add_plugins(CLI::App& parent, std::function<int()>& run) {
     CLI::App* command = parent.add_subcommand("plugins", "List what is registered, and the parameters that it takes");
     command->add_option("KIND", options->kind, "shape, material, light, integrator, ...");
     command->add_option("NAME", options->name, "one of that kind: tells its parameters");
-    command->add_flag("--json", options->json, "print JSON (docs/plugins-json.md)");
+    command->add_flag("--json", options->json, "print JSON (docs/describe.md)");
     command->add_flag("--markdown", options->markdown, "print the reference page");
     command->callback([&run, options] { run = [options] { return plugins(*options); }; });
 }

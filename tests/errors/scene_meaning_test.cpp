@@ -58,13 +58,13 @@ TEST(SceneMeaning, ValuesMustBeInRange) {
     expect_error("Material \"diffuse\" \"rgb reflectance\" [ 0.5 1.5 0.5 ]\n" + kTriangle, 1, 40, {"component 1.5", "between 0 and 1"});
     expect_error("Material \"mix\" \"string materials\" [ \"a\" \"b\" ] \"float amount\" 2\nMakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMakeNamedMaterial \"b\" \"string type\" \"diffuse\"\n" + kTriangle, 1, 62, {"\"amount\" is 2", "0 to 1"});
     expect_error("Scale 1 0 1\n" + kTriangle, 2, 1, {"cannot be inverted"});
-    expect_error("LightSource \"spot\" \"point3 from\" [ 1 2 3 ] \"point3 to\" [ 1 2 3 ]", 1, 57, {"the same point"});
+    expect_error("LightSource \"spot\" \"point3 from\" [ 1 2 3 ] \"point3 to\" [ 1 2 3 ]", 1, 58, {"the same point"});
 }
 
 TEST(SceneMeaning, SpectraMustMakeSense) {
     expect_error("Material \"conductor\" \"spectrum eta\" \"metal-Al-ta\"\n" + kTriangle, 1, 37, {"neither a named spectrum nor a file", "did you mean \"metal-Al-eta\"?"});
-    expect_error("LightSource \"point\" \"spectrum I\" [ 500 1 400 2 ]", 1, 36, {"wavelength 400 follows 500", "must rise"});
-    expect_error("LightSource \"point\" \"spectrum I\" [ 500 1 600 ]", 1, 36, {"3 numbers", "pairs"});
+    expect_error("LightSource \"point\" \"spectrum I\" [ 500 1 400 2 ]", 1, 21, {"wavelengths of \"spectrum I\" do not increase"});
+    expect_error("LightSource \"point\" \"float I\" 5", 1, 21, {"\"I\" is of type float", "rgb, blackbody or spectrum"});
     expect_error("LightSource \"point\" \"blackbody I\" -5", 1, 35, {"temperature above 0 K"});
 }
 
@@ -96,7 +96,7 @@ TEST(SceneMeaning, FilmsAndCameras) {
     EXPECT_NE(errors("Camera \"realistic\"").find("unknown camera \"realistic\""), std::string::npos);
     EXPECT_NE(errors("Camera \"perspective\" \"float fov\" 180").find("must be above 0 to 179.9"), std::string::npos);
     EXPECT_NE(errors("Sampler \"random\"").find("unknown sampler \"random\""), std::string::npos);
-    EXPECT_NE(errors("PixelFilter \"gauss\"").find("did you mean"), std::string::npos);
+    EXPECT_NE(errors("PixelFilter \"gausian\"").find("did you mean"), std::string::npos);
 }
 
 }  // namespace

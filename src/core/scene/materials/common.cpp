@@ -118,7 +118,8 @@ void read_conductor(MaterialContext& context, const std::string& prefix) {
         const Parameter* parameter = reader.find(name);
         if (!parameter) return *named_spectrum(absent);
         if (parameter->type != ParameterType::kSpectrum) return {};
-        return sampled_spectrum(*parameter, context.build.description.directory, context.build.diagnostics);
+        const auto spectrum = sampled_spectrum(*parameter, context.build.description.directory, context.build.diagnostics);
+        return spectrum ? *spectrum : *named_spectrum(absent);  // what is wrong with it is told
     };
     const std::optional<SampledSpectrum> eta_spectrum = sampled(eta, "metal-Cu-eta"), k_spectrum = sampled(k, "metal-Cu-k");
     if (eta_spectrum && k_spectrum) {
