@@ -76,6 +76,7 @@ std::string Sources::excerpt(Location location) const {
     return line + suffix + "\n" + caret + "^";
 }
 
+// NOLINTBEGIN(performance-unnecessary-value-param): the texts are made for the call; none is copied.
 void Diagnostics::error(Location location, std::string message, std::string hint) {
     if (++error_count_ <= kMaxShown) errors_.push_back(format("error", location, message, hint));
 }
@@ -97,6 +98,8 @@ void Diagnostics::unsupported(Location location, std::string what, std::string h
     const Sources::Place place = sources_->place(location);
     skipped_.push_back(place.line == 0 ? what : what + " (" + place.file + ":" + std::to_string(place.line) + ")");
 }
+
+// NOLINTEND(performance-unnecessary-value-param)
 
 void Diagnostics::throw_if_errors() const {
     if (error_count_ == 0) return;

@@ -1,0 +1,41 @@
+"""Build the libFuzzer targets and fuzz: LAMPYRIS_FUZZ_SECONDS in all (CI: a minute), or a few seconds."""
+
+import os
+import shutil
+import subprocess
+
+import pytest
+
+TARGETS = ("parse", "ply")
+SECONDS = int(os.environ.get("LAMPYRIS_FUZZ_SECONDS", "6"))
+
+pytestmark = pytest.mark.skipif(shutil.which("clang++") is None, reason="libFuzzer comes with clang")
+
+
+@pytest.fixture(scope="module")
+def fuzz_build(source_dir):
+    build = source_dir / "build/fuzz-parser"
+    configure = ["cmake", "-S", source_dir / "tests/fuzz", "-B", build, "-G", "Ninja", "-DCMAKE_CXX_COMPILER=clang++"]
+    subprocess.run(configure, check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["cmake", "--build", build], check=True, stdout=subprocess.DEVNULL)
+    return build
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_finds_nothing(fuzz_build, source_dir, tmp_path, target):
+    # A fresh folder first: what is found in this run goes there, not into the tree's corpus.
+    folder = source_dir / "tests/fuzz"
+    dictionary = folder / ("pbrt.dict" if target == "parse" else "ply.dict")
+    limits = [f"-max_total_time={SECONDS // len(TARGETS)}", "-rss_limit_mb=1024", "-timeout=20", "-max_len=4096"]
+    command = [fuzz_build / f"{target}_fuzz", *limits, f"-dict={dictionary}", f"-artifact_prefix={fuzz_build}/", tmp_path]
+    run = subprocess.run([*command, folder / "corpus" / target], capture_output=True, text=True, check=False)
+    assert run.returncode == 0, f"finding left in {fuzz_build}:\n{run.stderr[-4000:]}"
+    assert "DONE" in run.stderr
+
+
+def test_the_seeds_are_read(fuzz_build, source_dir):
+    """The corpus is read without a finding, and is not empty: or the fuzzer would start from nothing."""
+    for target in TARGETS:
+        seeds = sorted((source_dir / "tests/fuzz/corpus" / target).iterdir())
+        assert len(seeds) >= 5
+        subprocess.run([fuzz_build / f"{target}_fuzz", *seeds], check=True, capture_output=True)
