@@ -73,7 +73,7 @@ def test_set_up_is_quick_and_silent_when_all_is_there(source_dir):
     start = time.monotonic()
     done = subprocess.run(["bash", "-euc", script], capture_output=True, text=True, timeout=60, check=False)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
-    assert time.monotonic() - start < 5.0  # 0.1 s on an idle machine; the tests share theirs
+    assert time.monotonic() - start < 10.0  # 0.1 s on an idle machine; the tests share theirs
 
 
 CLASSIC = """# a comment
