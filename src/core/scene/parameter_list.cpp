@@ -100,7 +100,7 @@ std::string ParameterList::get_string(std::string_view name, const std::string& 
 
 std::string ParameterList::get_choice(std::string_view name, const std::string& default_value,
                                       const std::vector<std::string>& choices, Diagnostics& diagnostics) const {
-    const std::string value = get_string(name, default_value, diagnostics);
+    std::string value = get_string(name, default_value, diagnostics);
     if (value == default_value || std::find(choices.begin(), choices.end(), value) != choices.end()) return value;
     const Parameter* parameter = find(name, ParameterType::kString);
     diagnostics.error(parameter ? parameter->value_location : Location{},
