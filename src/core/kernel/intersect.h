@@ -8,6 +8,9 @@ CONST uint MAX_PASSED_SURFACES = 100000u;
 // Shadow rays stop short of the light by this share of their length (as pbrt's do).
 CONST float SHADOW_EPSILON = 1e-4f;
 
+// Texture coordinates and derivatives are for textures, masks, bump maps and anisotropic roughness only.
+FN bool surface_needs_uv() { return CALLED_FOR(EFFECT_TEXTURES | EFFECT_ALPHA | EFFECT_BUMP | EFFECT_ANISOTROPIC | EFFECT_LIGHT_TEXTURES); }
+
 // The triangle's point that the ray meets (Möller and Trumbore 1997 for the barycentrics), in the geometry set's space.
 FN void triangle_surface(uint geometry, uint primitive, vec3 o, vec3 d, INOUT(Surface) s) {
     uvec4 data = geometries[geometry].data;
@@ -37,33 +40,42 @@ FN void triangle_surface(uint geometry, uint primitive, vec3 o, vec3 d, INOUT(Su
     float n_length = length_of(n);
     s.ng = n_length > 0.0f ? n / n_length : -d / length_of(d);
 
-    vec2 uv0 = vec2(0.0f, 0.0f);
-    vec2 uv1 = vec2(1.0f, 0.0f);
-    vec2 uv2 = vec2(1.0f, 1.0f);
-    if ((data.y & GEOMETRY_HAS_UVS) != 0u) {
-        uint first = geometries[geometry].attributes.y;
-        uv0 = vertex_uv(first + i0);
-        uv1 = vertex_uv(first + i1);
-        uv2 = vertex_uv(first + i2);
-    }
-    s.uv = b0 * uv0 + b1 * uv1 + b2 * uv2;
-    vec2 duv1 = uv1 - uv0;
-    vec2 duv2 = uv2 - uv0;
-    float duv_det = duv1.x * duv2.y - duv1.y * duv2.x;
-    bool has_uv_map = abs(duv_det) >= 1e-9f;
-    float duv_inverse = has_uv_map ? 1.0f / duv_det : 0.0f;
-    if (has_uv_map) {
-        s.dpdu = (e1 * duv2.y - e2 * duv1.y) * duv_inverse;
-        s.dpdv = (e2 * duv1.x - e1 * duv2.x) * duv_inverse;
-        has_uv_map = length_squared(cross3(s.dpdu, s.dpdv)) > 0.0f;
-    }
-    if (!has_uv_map) {
-        Frame frame = frame_from_z(s.ng);
-        s.dpdu = frame.x;
-        s.dpdv = frame.y;
-    }
+    s.uv = vec2(0.0f);
+    s.dpdu = vec3(0.0f);
+    s.dpdv = vec3(0.0f);
     s.dndu = vec3(0.0f);
     s.dndv = vec3(0.0f);
+    vec2 duv1 = vec2(0.0f);
+    vec2 duv2 = vec2(0.0f);
+    float duv_inverse = 0.0f;
+    bool has_uv_map = false;
+    if (surface_needs_uv()) {
+        vec2 uv0 = vec2(0.0f, 0.0f);
+        vec2 uv1 = vec2(1.0f, 0.0f);
+        vec2 uv2 = vec2(1.0f, 1.0f);
+        if ((data.y & GEOMETRY_HAS_UVS) != 0u) {
+            uint first = geometries[geometry].attributes.y;
+            uv0 = vertex_uv(first + i0);
+            uv1 = vertex_uv(first + i1);
+            uv2 = vertex_uv(first + i2);
+        }
+        s.uv = b0 * uv0 + b1 * uv1 + b2 * uv2;
+        duv1 = uv1 - uv0;
+        duv2 = uv2 - uv0;
+        float duv_det = duv1.x * duv2.y - duv1.y * duv2.x;
+        has_uv_map = abs(duv_det) >= 1e-9f;
+        if (has_uv_map) {
+            duv_inverse = 1.0f / duv_det;
+            s.dpdu = (e1 * duv2.y - e2 * duv1.y) * duv_inverse;
+            s.dpdv = (e2 * duv1.x - e1 * duv2.x) * duv_inverse;
+            has_uv_map = length_squared(cross3(s.dpdu, s.dpdv)) > 0.0f;
+        }
+        if (!has_uv_map) {
+            Frame frame = frame_from_z(s.ng);
+            s.dpdu = frame.x;
+            s.dpdv = frame.y;
+        }
+    }
 
     if (HAS(EFFECT_SMOOTH_NORMALS) && (data.y & GEOMETRY_HAS_NORMALS) != 0u) {
         uint first = geometries[geometry].attributes.x;
@@ -171,7 +183,7 @@ FN bool intersect_scene(vec3 origin, vec3 direction, OUT(Surface) s, INOUT(uint)
 FN bool scene_occluded(vec3 position, vec3 error, vec3 ng, vec3 direction, float distance, INOUT(uint) rays) {
     vec3 o = offset_origin(position, error, ng, direction);
     float t_max = distance >= INFINITE_DISTANCE ? INFINITE_DISTANCE : distance * (1.0f - SHADOW_EPSILON);
-    if (!HAS(EFFECT_ALPHA) && !HAS(EFFECT_INTERFACE)) {
+    if (!CALLED_FOR(EFFECT_ALPHA | EFFECT_INTERFACE)) {
         rays += 1u;
         return trace_occluded(o, direction, t_max);
     }

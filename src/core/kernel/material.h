@@ -163,7 +163,7 @@ FN Bsdf material_bsdf(INOUT(Surface) s, vec3 wo, OUT(Frame) frame) {
         b = bsdf_interface();
     }
     // Only anisotropic roughness asks where the tangent points.
-    bool oriented = HAS(EFFECT_ROUGH) && (b.alpha.x != b.alpha.y || b.alpha_base.x != b.alpha_base.y);
+    bool oriented = CALLED_FOR(EFFECT_ANISOTROPIC) && (b.alpha.x != b.alpha.y || b.alpha_base.x != b.alpha_base.y);
     if (oriented) frame = frame_from_xz(s.dpdu, s.ns);
     else frame = frame_from_z(s.ns);
     return b;

@@ -79,17 +79,15 @@ FN Sampler sampler_begin(uint pixel, uint sample_index, uint seed, uint kind) {
     return s;
 }
 
-FN float sample_1d(INOUT(Sampler) s) {
-    uint dimension = s.dimension++;
+// A number by its dimension, for those who skip what they do not need: a dimension keeps its meaning in every sample.
+FN float sample_1d_at(IN(Sampler) s, uint dimension) {
     if (s.kind == SAMPLER_INDEPENDENT) return unit_float(pcg3d(uvec3(s.key, s.index, dimension)).x);
     uint seed = hash_combine(s.key, dimension);
     uint shuffled = reverse_bits(scramble_reversed(reverse_bits(s.index), seed));
     return unit_float(reverse_bits(scramble_reversed(shuffled, hash32(seed ^ 0xa511e9b3u))));
 }
 
-FN vec2 sample_2d(INOUT(Sampler) s) {
-    uint dimension = s.dimension;
-    s.dimension += 2u;
+FN vec2 sample_2d_at(IN(Sampler) s, uint dimension) {
     if (s.kind == SAMPLER_INDEPENDENT) {
         uvec3 bits = pcg3d(uvec3(s.key, s.index, dimension));
         return vec2(unit_float(bits.x), unit_float(bits.y));
@@ -99,6 +97,17 @@ FN vec2 sample_2d(INOUT(Sampler) s) {
     uint x = reverse_bits(scramble_reversed(shuffled, hash32(seed ^ 0xa511e9b3u)));
     uint y = reverse_bits(scramble_reversed(sobol_second_reversed(shuffled), hash32(seed ^ 0x63d83595u)));
     return vec2(unit_float(x), unit_float(y));
+}
+
+// The next numbers.
+FN float sample_1d(INOUT(Sampler) s) {
+    s.dimension += 1u;
+    return sample_1d_at(s, s.dimension - 1u);
+}
+
+FN vec2 sample_2d(INOUT(Sampler) s) {
+    s.dimension += 2u;
+    return sample_2d_at(s, s.dimension - 2u);
 }
 
 // A stream of independent numbers for inner random walks (layered coats), keyed by two words.

@@ -29,7 +29,7 @@ FN vec3 path_direct_light(IN(Surface) s, IN(Frame) frame, IN(Bsdf) bsdf, vec3 wo
 }
 
 // Radiance that arrives at the camera along the ray. The first hit's features go to `pixel`.
-FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, INOUT(Sampler) numbers, INOUT(FilmPixel) pixel, INOUT(uint) rays) {
+FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, IN(Sampler) numbers, INOUT(FilmPixel) pixel, INOUT(uint) rays) {
     vec3 origin = ray_origin;
     vec3 direction = ray_direction;
     vec3 radiance = vec3(0.0f);
@@ -78,20 +78,21 @@ FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, INOUT(Sampler) number
             pixel.squares.w += distance_of(s.position, ray_origin);
         }
         if (depth >= params[0].maxdepth) break;
-        numbers.dimension = PATH_CAMERA_DIMENSIONS + uint(depth) * PATH_VERTEX_DIMENSIONS;
+        uint dimension = PATH_CAMERA_DIMENSIONS + uint(depth) * PATH_VERTEX_DIMENSIONS;
         depth += 1;
 
         vec3 wo = to_local(frame, -direction);
-        float u_light = sample_1d(numbers);
-        float u_lobe = sample_1d(numbers);
-        vec2 u_light_point = sample_2d(numbers);
-        vec2 u_direction = sample_2d(numbers);
-        float u_roulette = sample_1d(numbers);
         lights_were_sampled = !bsdf_is_specular(bsdf);
-        if (lights_were_sampled && scene[0].lights.x > 0u)
+        if (lights_were_sampled && scene[0].lights.x > 0u) {
+            float u_light = 0.0f;
+            if (scene[0].lights.x > 1u) u_light = sample_1d_at(numbers, dimension);
+            vec2 u_light_point = sample_2d_at(numbers, dimension + 1u);
             radiance += throughput * path_direct_light(s, frame, bsdf, wo, u_light, u_light_point, rays);
+        }
 
         BsdfSample next;
+        float u_lobe = sample_1d_at(numbers, dimension + 3u);
+        vec2 u_direction = sample_2d_at(numbers, dimension + 4u);
         if (!bsdf_sample(bsdf, wo, u_lobe, u_direction, TRANSPORT_RADIANCE, next)) break;
         throughput *= next.f * (abs(next.wi.z) / next.pdf);
         bsdf_density = next.pdf_is_proportional != 0u ? bsdf_pdf(bsdf, wo, next.wi, TRANSPORT_RADIANCE) : next.pdf;
@@ -105,7 +106,7 @@ FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, INOUT(Sampler) number
         float survival = max_component(throughput) * eta_scale;
         if (!(survival > 0.0f)) break;
         if (depth > params[0].rrdepth && survival < 1.0f) {
-            if (u_roulette >= survival) break;
+            if (sample_1d_at(numbers, dimension + 6u) >= survival) break;
             throughput = throughput / survival;
         }
     }

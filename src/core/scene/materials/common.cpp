@@ -45,7 +45,9 @@ Roughness read_roughness(MaterialContext& context, const std::string& prefix) {
     const auto along = [&](const std::string& name) {
         return context.reader.has(name) ? read_float(context.build, context.reader, name) : both;
     };
-    return {along(prefix + "uroughness"), along(prefix + "vroughness")};
+    const Roughness roughness{along(prefix + "uroughness"), along(prefix + "vroughness")};
+    if (roughness.u.value != roughness.v.value || roughness.u.texture != roughness.v.texture) context.ask(kernel::EFFECT_ANISOTROPIC);
+    return roughness;
 }
 
 ParameterSpec remap_spec() {

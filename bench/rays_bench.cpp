@@ -1,0 +1,175 @@
+// How much of the time of path tracing is ray tracing: `path` on the CPU backend, against bare Embree (rtcIntersect1 and
+// rtcOccluded1) on the very same rays, in the same process, with the same threads and blocks of work, in turns.
+//
+//     rays_bench SCENE WIDTHxHEIGHT SAMPLES THREADS REPEATS      prints JSON
+#include "backends/cpu/cpu_scene.h"
+#include "backends/cpu/embree_scene.h"
+#include "core/film.h"
+#include "core/integrator.h"
+#include "core/scene/build.h"
+#include "integrators/path/path.params.h"
+
+#include <nlohmann/json.hpp>
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+#include <xmmintrin.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+namespace lampyris {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct RecordedRay {
+    float origin[3], direction[3], t_max;
+    bool closest;
+};
+
+// Passes rays on to Embree and writes them down; one thread only.
+struct Recorder {
+    CpuTracer next;
+    std::vector<RecordedRay> rays;
+    void add(const float o[3], const float d[3], float t_max, bool closest) {
+        rays.push_back({{o[0], o[1], o[2]}, {d[0], d[1], d[2]}, t_max, closest});
+    }
+    static bool closest(void* self, const float o[3], const float d[3], float t_max, TraceHit& hit) {
+        Recorder& recorder = *static_cast<Recorder*>(self);
+        recorder.add(o, d, t_max, true);
+        return recorder.next.closest(recorder.next.scene, o, d, t_max, hit);
+    }
+    static bool occluded(void* self, const float o[3], const float d[3], float t_max) {
+        Recorder& recorder = *static_cast<Recorder*>(self);
+        recorder.add(o, d, t_max, false);
+        return recorder.next.occluded(recorder.next.scene, o, d, t_max);
+    }
+};
+
+template <typename Work>
+double timed(tbb::task_arena& arena, size_t count, size_t block, const Work& work) {
+    const auto start = Clock::now();
+    arena.execute([&] {
+        tbb::parallel_for(
+            tbb::blocked_range<size_t>(0, count, block), [&](const tbb::blocked_range<size_t>& range) { work(range.begin(), range.end()); },
+            tbb::simple_partitioner{});
+    });
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// What Embree costs without anything of ours: the ray's set-up and the call.
+uint64_t trace_bare(RTCScene scene, const RecordedRay* rays, size_t begin, size_t end) {
+    uint64_t hits = 0;
+    for (size_t i = begin; i < end; ++i) {
+        const RecordedRay& r = rays[i];
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        RTCRayHit ray;
+        ray.ray.org_x = r.origin[0], ray.ray.org_y = r.origin[1], ray.ray.org_z = r.origin[2];
+        ray.ray.dir_x = r.direction[0], ray.ray.dir_y = r.direction[1], ray.ray.dir_z = r.direction[2];
+        ray.ray.tnear = 0.0f, ray.ray.tfar = r.t_max, ray.ray.time = 0.0f;
+        ray.ray.mask = ~0u, ray.ray.id = 0, ray.ray.flags = 0;
+        ray.hit.geomID = ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        if (r.closest) {
+            rtcIntersect1(scene, &context, &ray);
+            hits += ray.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+        } else {
+            rtcOccluded1(scene, &context, &ray.ray);
+            hits += ray.ray.tfar < 0.0f;
+        }
+    }
+    return hits;
+}
+
+double median(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return values[values.size() / 2];
+}
+
+int run(const std::string& file, int width, int height, uint32_t samples, int threads, int repeats) {
+    auto sources = std::make_shared<Sources>();
+    Diagnostics diagnostics(*sources);
+    SceneDescription description = parse_scene_file(file, sources, diagnostics);
+    BuildOptions options;
+    options.resolution = {width, height};
+    BuiltScene built = build_scene(std::move(description), options, diagnostics);
+    diagnostics.throw_if_errors();
+    const Scene& scene = built.scene;
+    const CpuScene cpu(scene, CpuTracerKind::embree);
+    PathParams params;
+    const IntegratorFactory& factory = integrators().require("path");
+    set_defaults(&params, factory.fields);
+    read_parameters(&params, factory.fields, built.settings.integrator.parameters, diagnostics);
+    const CpuKernelFunction kernel = find_cpu_kernel("integrators/path/path.kernel.h", CpuTracerKind::embree, scene.effects.mask());
+
+    const uint32_t pixels = uint32_t(width) * uint32_t(height);
+    std::vector<kernel::FilmPixel> film(pixels);
+    kernel::FilmWindow window{{0, 0, uint32_t(width), uint32_t(height)}, {0, samples, 0, kernel::SAMPLER_SOBOL}};
+    uint32_t unfinished = 0;
+    void* buffers[] = {&window, &params, film.data()};
+    const auto path = [&](const CpuTracer& tracer, size_t begin, size_t end) {
+        CpuInvocation call;
+        call.scene_buffers = cpu.buffers();
+        call.kernel_buffers = buffers;
+        call.tracer = &tracer;
+        call.unfinished = &unfinished;
+        call.begin = uint32_t(begin), call.end = uint32_t(end);
+        kernel(call);
+    };
+    Recorder recorder{cpu.tracer(), {}};
+    path({&recorder, &Recorder::closest, &Recorder::occluded}, 0, pixels);
+
+    tbb::task_arena arena(threads);
+    constexpr size_t kPixelBlock = 64;
+    const size_t ray_block = std::max<size_t>(1, recorder.rays.size() * kPixelBlock / pixels);
+    std::atomic<uint64_t> hits{0};
+    std::vector<double> path_s, bare_s, shares;
+    for (int i = 0; i <= repeats; ++i) {
+        std::fill(film.begin(), film.end(), kernel::FilmPixel{});
+        const double p = timed(arena, pixels, kPixelBlock, [&](size_t begin, size_t end) {
+            _mm_setcsr(_mm_getcsr() | 0x8040u);
+            path(cpu.tracer(), begin, end);
+        });
+        const double b = timed(arena, recorder.rays.size(), ray_block, [&](size_t begin, size_t end) {
+            hits += trace_bare(cpu.embree()->top_scene(), recorder.rays.data(), begin, end);
+        });
+        if (i == 0) continue;  // the first round warms up
+        path_s.push_back(p);
+        bare_s.push_back(b);
+        shares.push_back(b / p);
+    }
+    const double rays = double(recorder.rays.size());
+    const size_t closest = size_t(std::count_if(recorder.rays.begin(), recorder.rays.end(), [](const RecordedRay& r) { return r.closest; }));
+    size_t triangles = 0;
+    for (const kernel::GeometryRecord& geometry : scene.geometries) triangles += geometry.attributes.z;
+    const nlohmann::ordered_json json = {{"scene", file},          {"primitives", triangles},
+                                         {"threads", threads},     {"rays", recorder.rays.size()},
+                                         {"closest_hit_rays", closest}, {"path_mrays_per_s", rays / median(path_s) * 1e-6},
+                                         {"embree_mrays_per_s", rays / median(bare_s) * 1e-6}, {"share", median(shares)},
+                                         {"share_min", *std::min_element(shares.begin(), shares.end())},
+                                         {"share_max", *std::max_element(shares.begin(), shares.end())},
+                                         {"samples_per_s", double(pixels) * samples / median(path_s)}};
+    std::printf("%s\n", json.dump().c_str());
+    return unfinished ? 1 : 0;
+}
+
+}  // namespace
+}  // namespace lampyris
+
+int main(int argc, char** argv) {
+    int width = 0, height = 0;
+    if (argc != 6 || std::sscanf(argv[2], "%dx%d", &width, &height) != 2) {
+        std::fprintf(stderr, "usage: rays_bench SCENE WIDTHxHEIGHT SAMPLES THREADS REPEATS\n");
+        return 1;
+    }
+    try {
+        return lampyris::run(argv[1], width, height, uint32_t(std::atoi(argv[3])), std::atoi(argv[4]), std::atoi(argv[5]));
+    } catch (const lampyris::Error& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        return int(error.code());
+    }
+}
