@@ -36,7 +36,7 @@ class VulkanDevice final : public Device {
         if (ray_query == Switch::on && !context_->can.ray_query) {
             throw MachineError(fmt::format("error: backend.ray_query=on: {} ({}) does not offer VK_KHR_ray_query", context_->name, context_->driver));
         }
-        // A driver that traces on the CPU is slower at it than the BVH2 in the shader (measured: docs/backends.md).
+        // A driver that traces on the CPU is slower at it than the BVH2 in the shader (measured: see docs/backends.md).
         shader_options_.ray_query = ray_query == Switch::on || (ray_query == Switch::automatic && context_->can.ray_query && !context_->can.is_cpu);
         unfinished_ = std::make_unique<VulkanBuffer>(context_, account_, sizeof(uint32_t), "the unfinished flag", BufferOptions{.staged = staged_});
         unfinished_->fill_zero();
