@@ -14,6 +14,7 @@
 #include "core/kernel/bsdf_conductor.h"
 #include "core/kernel/bsdf_dielectric.h"
 #include "core/kernel/bsdf_layered.h"
+#include "core/kernel/bsdf_clear_coat.h"
 // clang-format on
 
 // ---- Making one ------------------------------------------------------------------------------------------------------
@@ -33,6 +34,7 @@ FN Bsdf bsdf_interface() {
     b.g = 0.0f;
     b.max_depth = 0u;
     b.samples = 1u;
+    b.inner = -1.0f;
     return b;
 }
 
@@ -108,6 +110,7 @@ FN Bsdf bsdf_coated_diffuse(IN(Bsdf) coat, vec3 reflectance, uint flags) {
     b.kind = MATERIAL_COATED_DIFFUSE;
     b.flags = flags;
     b.color0 = bounded_share(reflectance);
+    if (clear_coat_applies(b)) b.inner = clear_coat_inner_reflectance(b.eta, b.thickness);
     return b;
 }
 
@@ -153,6 +156,7 @@ FN vec3 bsdf_eval_pdf(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport, OUT(float) p
     if (HAS(EFFECT_DIFFUSE_TRANSMISSION) && b.kind == MATERIAL_DIFFUSE_TRANSMISSION) {
         return diffuse_transmission_eval(b.color0, b.color1, wo, wi, pdf);
     }
+    if (HAS(EFFECT_COAT) && b.inner >= 0.0f) return clear_coat_eval(b, wo, wi, pdf);
     if (HAS(EFFECT_COAT) && bsdf_is_layered(b)) {
         pdf = layered_pdf(b, wo, wi, transport);
         return layered_eval(b, wo, wi, transport);
@@ -161,13 +165,13 @@ FN vec3 bsdf_eval_pdf(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport, OUT(float) p
 }
 
 FN vec3 bsdf_eval(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport) {
-    if (HAS(EFFECT_COAT) && bsdf_is_layered(b)) return layered_eval(b, wo, wi, transport);
+    if (HAS(EFFECT_COAT) && bsdf_is_layered(b) && b.inner < 0.0f) return layered_eval(b, wo, wi, transport);
     float pdf;
     return bsdf_eval_pdf(b, wo, wi, transport, pdf);
 }
 
 FN float bsdf_pdf(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport) {
-    if (HAS(EFFECT_COAT) && bsdf_is_layered(b)) return layered_pdf(b, wo, wi, transport);
+    if (HAS(EFFECT_COAT) && bsdf_is_layered(b) && b.inner < 0.0f) return layered_pdf(b, wo, wi, transport);
     float pdf;
     bsdf_eval_pdf(b, wo, wi, transport, pdf);
     return pdf;
@@ -188,6 +192,8 @@ FN bool bsdf_sample(IN(Bsdf) b, vec3 wo, float uc, vec2 u, uint transport, OUT(B
         found = thin_dielectric_sample(b.eta, wo, uc, s);
     } else if (HAS(EFFECT_DIFFUSE_TRANSMISSION) && b.kind == MATERIAL_DIFFUSE_TRANSMISSION) {
         found = diffuse_transmission_sample(b.color0, b.color1, wo, uc, u, s);
+    } else if (HAS(EFFECT_COAT) && b.inner >= 0.0f) {
+        found = clear_coat_sample(b, wo, uc, u, s);
     } else if (HAS(EFFECT_COAT) && bsdf_is_layered(b)) {
         found = layered_sample(b, wo, uc, u, transport, s);
     }
