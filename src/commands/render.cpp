@@ -115,6 +115,8 @@ int render(const RenderOptions& options) {
     ChosenIntegrator chosen = choose_integrator(options, built.settings, diagnostics);
     if (!options.quiet)
         for (const std::string& warning : diagnostics.warnings()) fmt::print(stderr, "{}\n", warning);
+    if (!options.quiet && !diagnostics.has_errors())
+        for (const std::string& note : built.scene.notes) fmt::print(stderr, "note: {}\n", note);
     diagnostics.throw_if_errors();
     built.scene.unsupported = diagnostics.unsupported_list();
     run.scene_s = seconds_since(scene_start);
@@ -165,7 +167,7 @@ int render(const RenderOptions& options) {
         print_replay(session, options);
         return int(ExitCode::kDone);
     }
-    run.scene = built.scene.name;
+    run.scene = options.scene;
     run.integrator = chosen.name;
     run.integrator_parameters = show_parameters(chosen.integrator->parameters(), *chosen.fields);
     run.backend = device->backend();
