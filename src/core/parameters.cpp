@@ -21,7 +21,10 @@ ParameterSpec make_spec(std::string name, ParameterType type, double number, std
     return spec;
 }
 
-std::string expected(const ParameterSpec& spec) { return fmt::format("must be {}", spec.range_text()); }
+std::string expected(const ParameterSpec& spec) {
+    const std::string range = spec.range_text();
+    return fmt::format("must be {}", range.empty() ? "finite" : range);
+}
 
 // A whole text as a number: "1e3", "12"; nothing else around it.
 template <typename T>
@@ -64,6 +67,8 @@ ParameterSpec values(std::string name, ParameterType type, std::string absent, s
 }
 
 bool ParameterSpec::contains(double value) const {
+    // Infinity only where it is the default, as "no limit".
+    if (!std::isfinite(value) && value != number) return false;
     return (above_minimum ? value > minimum : value >= minimum) && value <= maximum;
 }
 
@@ -150,7 +155,13 @@ std::string ParameterReader::get_string(std::string_view name) {
 }
 
 std::vector<float> ParameterReader::get_tuple(std::string_view name, size_t count) {
-    return entity_->parameters.get_floats(name, spec(name).type, count, *diagnostics_);
+    std::vector<float> values = entity_->parameters.get_floats(name, spec(name).type, count, *diagnostics_);
+    for (const float number : values)
+        if (!std::isfinite(number)) {
+            error(name, fmt::format("\"{}\" is not finite", name));
+            return {};
+        }
+    return values;
 }
 
 std::vector<float> ParameterReader::take_floats(std::string_view name) {

@@ -96,7 +96,7 @@ void add_area_light(ShapeContext& context, kernel::LightRecord record, uint32_t 
     record.ids = {geometry, primitive, 0u, 0u};
     record.emission = {radiance, 0.0f};
     const glm::vec3 average = light.texture == kNone ? radiance : radiance * light.texture_average;
-    context.build.lights.push_back({record, luminance_of(average) * sides * area * std::numbers::pi_v<float>, false});
+    context.build.lights.push_back({record, luminance_of(average) * sides * area * std::numbers::pi_v<float>, false, context.shape.location});
     if (record.data.x == kernel::LIGHT_GEOMETRY) context.build.ask(kernel::EFFECT_QUADRIC_LIGHTS, light.asked_by);
 }
 

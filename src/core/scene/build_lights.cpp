@@ -4,7 +4,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace lampyris {
+
+namespace {
+constexpr float kLargestPower = 1e30f;
+}
 
 void build_lights(BuildContext& context) {
     for (LightDescription& light : context.description.lights) {
@@ -34,8 +41,13 @@ void finish_lights(BuildContext& context) {
     const float radius = scene.record.bounds.w;
     std::vector<float> powers;
     for (const auto& light : all) {
+        const kernel::vec4& emission = light.record.emission;
+        if (!std::isfinite(emission.x) || !std::isfinite(emission.y) || !std::isfinite(emission.z))
+            context.diagnostics.error(light.location, "the light's emission is not finite", "smaller numbers");
         scene.lights.push_back(light.record);
-        powers.push_back(light.power * (light.scales_with_scene ? radius * radius : 1.0f));
+        // Weights for choosing, no more: what is too large to count is chosen as often as can be.
+        const float power = light.power * (light.scales_with_scene ? radius * radius : 1.0f);
+        powers.push_back(std::isfinite(power) ? std::clamp(power, 0.0f, kLargestPower) : kLargestPower);
     }
     scene.record.lights.x = uint32_t(all.size());
     scene.record.lights.y = infinite;

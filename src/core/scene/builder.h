@@ -45,6 +45,7 @@ struct BuildContext {
         kernel::LightRecord record;
         float power = 0.0f;          // luminous; of infinite and distant lights: per unit of the scene's radius squared
         bool scales_with_scene = false;
+        Location location;           // of the directive
     };
     std::vector<PendingLight> infinite_lights, lights;
 

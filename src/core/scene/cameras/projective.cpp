@@ -3,6 +3,7 @@
 
 #include <glm/glm.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -20,7 +21,8 @@ std::array<float, 4> screen_window(CameraContext& camera) {
                                                 : std::array{-1.0f, 1.0f, -1.0f / aspect, 1.0f / aspect};
     if (const Parameter* given = camera.reader.find("screenwindow")) {
         const auto* numbers = std::get_if<std::vector<float>>(&given->values);
-        if (!numbers || numbers->size() != 4 || (*numbers)[0] == (*numbers)[1] || (*numbers)[2] == (*numbers)[3]) {
+        if (!numbers || numbers->size() != 4 || (*numbers)[0] == (*numbers)[1] || (*numbers)[2] == (*numbers)[3] ||
+            !std::all_of(numbers->begin(), numbers->end(), [](float x) { return std::isfinite(x); })) {
             camera.reader.error("screenwindow", "\"screenwindow\" must be four numbers", "xmin xmax ymin ymax, not equal");
         } else {
             for (size_t i = 0; i < 4; ++i) window[i] = (*numbers)[i];

@@ -19,7 +19,7 @@ void build(LightContext& context) {
     if (const float illuminance = context.reader.get_float("illuminance"); illuminance > 0.0f) irradiance *= illuminance;
     record.emission = {irradiance, 0.0f};
     context.ask(kernel::EFFECT_DISTANT_LIGHTS);
-    context.build.lights.push_back({record, luminance_of(irradiance) * std::numbers::pi_v<float>, true});
+    context.build.lights.push_back({record, luminance_of(irradiance) * std::numbers::pi_v<float>, true, context.light.location});
 }
 
 const RegisterLight distant("distant", "Parallel light from one direction.",

@@ -31,7 +31,7 @@ void add_light(LightContext& context, kernel::LightRecord& record, glm::vec3 sca
         scale = emitted > 0.0 ? scale * float(power / emitted) : glm::vec3(0.0f);
     }
     record.emission = {scale, 0.0f};
-    context.build.lights.push_back({record, float(luminance_of(scale) * emitted), false});
+    context.build.lights.push_back({record, float(luminance_of(scale) * emitted), false, context.light.location});
 }
 
 void build_projection(LightContext& context) {

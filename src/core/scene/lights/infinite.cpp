@@ -29,7 +29,7 @@ void build_constant(LightContext& context, float scale) {
     if (const float illuminance = context.reader.get_float("illuminance"); illuminance > 0.0f) radiance *= illuminance / kPi;
     record.emission = {radiance, 0.0f};
     context.ask(kernel::EFFECT_ENVIRONMENT);
-    context.build.infinite_lights.push_back({record, luminance_of(radiance) * 4.0f * kPi * kPi, true});
+    context.build.infinite_lights.push_back({record, luminance_of(radiance) * 4.0f * kPi * kPi, true, context.light.location});
 }
 
 void build_image(LightContext& context, const std::string& filename, float scale) {
@@ -69,7 +69,7 @@ void build_image(LightContext& context, const std::string& filename, float scale
     context.ask(kernel::EFFECT_ENVIRONMENT);
     context.ask(kernel::EFFECT_ENVIRONMENT_IMAGE);
     context.ask(kernel::EFFECT_IMAGES);
-    build.infinite_lights.push_back({record, float(average * scale * 4.0 * std::numbers::pi * std::numbers::pi), true});
+    build.infinite_lights.push_back({record, float(average * scale * 4.0 * std::numbers::pi * std::numbers::pi), true, context.light.location});
 }
 
 void build(LightContext& context) {

@@ -17,7 +17,7 @@ void add_light(LightContext& context, kernel::LightRecord record, glm::vec3 inte
     if (const float power = context.reader.get_float("power"); power > 0.0f) intensity *= power / sphere;
     record.emission = {intensity, 0.0f};
     context.ask(kernel::EFFECT_POINT_LIGHTS);
-    context.build.lights.push_back({record, luminance_of(intensity) * sphere, false});
+    context.build.lights.push_back({record, luminance_of(intensity) * sphere, false, context.light.location});
 }
 
 void build_point(LightContext& context) {
