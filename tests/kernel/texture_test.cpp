@@ -107,7 +107,8 @@ TEST(Texture, Checkerboards) {
         SCOPED_TRACE(dimension);
         Random random(dimension);
         TextureScene scene;
-        TextureNode node{operation(kernel::TEXTURE_CHECKERBOARD, kernel::MAPPING_UV, dimension), {constant_node(random), constant_node(random)}};
+        const uint32_t mapping = dimension == 3 ? kernel::MAPPING_SPACE : kernel::MAPPING_UV;
+        TextureNode node{operation(kernel::TEXTURE_CHECKERBOARD, mapping), {constant_node(random), constant_node(random)}};
         if (dimension == 3)
             set_rows(node.op, random);
         else
@@ -129,7 +130,7 @@ TEST(Texture, Noise) {
         SCOPED_TRACE(kind);
         Random random(kind);
         TextureScene scene;
-        TextureNode node{operation(kind, kernel::MAPPING_UV, 6), {}};
+        TextureNode node{operation(kind, kernel::MAPPING_SPACE, 6), {}};
         set_rows(node.op, random);
         node.op.a = {0.6f, 1.3f, 0.4f, 0};
         // The sixth octave is 31 times as fine: a rounding error of 1e-6 in position grows as much.
@@ -143,7 +144,7 @@ TEST(Texture, RandomTrees) {
     const std::function<TextureNode(int)> tree = [&](int levels) -> TextureNode {
         constexpr uint32_t kKinds[] = {kernel::TEXTURE_SCALE, kernel::TEXTURE_MIX, kernel::TEXTURE_DIRECTION_MIX, kernel::TEXTURE_CHECKERBOARD};
         if (levels == 0) return random() % 2 ? constant_node(random) : st_node(kernel::MAPPING_UV, random);
-        TextureNode node{operation(kKinds[random() % 4], kernel::MAPPING_UV, 2), {}};
+        TextureNode node{operation(kKinds[random() % 4]), {}};
         if (node.op.data.x == kernel::TEXTURE_DIRECTION_MIX) node.op.a = {0, 0, 1, 0};
         if (node.op.data.x == kernel::TEXTURE_CHECKERBOARD) node.op.m0 = {2, 2, 0.3f, 0.3f};
         const size_t count = node.op.data.x == kernel::TEXTURE_MIX ? 3 : 2;

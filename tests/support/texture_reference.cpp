@@ -1,5 +1,7 @@
 #include "support/texture_reference.h"
 
+#include "core/scene/noise_table.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -9,24 +11,11 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-// Perlin 2002, "Improving Noise": the permutation, and the twelve edge directions in the order of the hash. The four that come
-// twice are pbrt's choice.
-constexpr int kPermutation[256] = {
-    151, 160, 137, 91, 90, 15, 131, 13, 201, 95, 96, 53, 194, 233, 7, 225, 140, 36, 103, 30, 69, 142, 8, 99,
-    37, 240, 21, 10, 23, 190, 6, 148, 247, 120, 234, 75, 0, 26, 197, 62, 94, 252, 219, 203, 117, 35, 11, 32,
-    57, 177, 33, 88, 237, 149, 56, 87, 174, 20, 125, 136, 171, 168, 68, 175, 74, 165, 71, 134, 139, 48, 27, 166,
-    77, 146, 158, 231, 83, 111, 229, 122, 60, 211, 133, 230, 220, 105, 92, 41, 55, 46, 245, 40, 244, 102, 143, 54,
-    65, 25, 63, 161, 1, 216, 80, 73, 209, 76, 132, 187, 208, 89, 18, 169, 200, 196, 135, 130, 116, 188, 159, 86,
-    164, 100, 109, 198, 173, 186, 3, 64, 52, 217, 226, 250, 124, 123, 5, 202, 38, 147, 118, 126, 255, 82, 85, 212,
-    207, 206, 59, 227, 47, 16, 58, 17, 182, 189, 28, 42, 223, 183, 170, 213, 119, 248, 152, 2, 44, 154, 163, 70,
-    221, 153, 101, 155, 167, 43, 172, 9, 129, 22, 39, 253, 19, 98, 108, 110, 79, 113, 224, 232, 178, 185, 112, 104,
-    218, 246, 97, 228, 251, 34, 242, 193, 238, 210, 144, 12, 191, 179, 162, 241, 81, 51, 145, 235, 249, 14, 239, 107,
-    49, 192, 214, 31, 181, 199, 106, 157, 184, 84, 204, 176, 115, 121, 50, 45, 127, 4, 150, 254, 138, 236, 205, 93,
-    222, 114, 67, 29, 24, 72, 243, 141, 128, 195, 78, 66, 215, 61, 156, 180};
+// Perlin 2002, "Improving Noise": the twelve edge directions in the order of the hash. The four that come twice are pbrt's choice.
 constexpr int kEdges[16][3] = {{1, 1, 0}, {-1, 1, 0}, {1, -1, 0}, {-1, -1, 0}, {1, 0, 1},  {-1, 0, 1}, {1, 0, -1},  {-1, 0, -1},
                                {0, 1, 1}, {0, -1, 1}, {0, 1, -1}, {0, -1, -1}, {1, 1, 0}, {-1, 1, 0}, {0, 1, -1}, {0, -1, -1}};
 
-int permuted(int64_t i) { return kPermutation[((i % 256) + 256) % 256]; }
+int permuted(int64_t i) { return kNoisePermutation[((i % 256) + 256) % 256]; }
 
 double octaves(glm::dvec3 p, double roughness, uint32_t count, bool turbulent) {
     double sum = 0;
@@ -136,7 +125,7 @@ glm::dvec3 reference_color(const TextureNode& node, const TexturePoint& point, c
         }
         case kernel::TEXTURE_CHECKERBOARD: {
             glm::dvec3 p(reference_st(op, point), 0.5);
-            if (op.data.w == 3) p = texture_space(op, point.position);
+            if (op.data.y >> 8 == kernel::MAPPING_SPACE) p = texture_space(op, point.position);
             int64_t cell = 0;
             for (int axis = 0; axis < 3; ++axis) {
                 margin = std::min(margin, edge_distance(p[axis]));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/device.h"
+#include "core/scene/noise_table.h"
 #include "core/scene/scene.h"
 
 #include <cstring>
@@ -29,7 +30,7 @@ struct TextureScene {
         scene.positions.resize(16);
         scene.indices = {0, 1, 2};
         scene.normals = scene.uvs = scene.distributions = {0.0f};
-        scene.texels = {0};
+        scene.texels.assign(std::begin(kNoisePermutation), std::end(kNoisePermutation));  // noise finds its table at 0
         scene.images.resize(1);
         scene.lights.resize(1);
         scene.record.counts = {1, 1, 0, 0};
@@ -102,7 +103,7 @@ inline TextureOp operation(uint32_t kind, uint32_t mapping = kernel::MAPPING_UV,
     return op;
 }
 inline TextureOp constant_op(glm::vec3 value) {
-    TextureOp op = operation(kernel::TEXTURE_CONSTANT);
+    TextureOp op = operation(kernel::TEXTURE_CONSTANT, kernel::MAPPING_NONE);
     op.a = glm::vec4(value, 0.0f);
     return op;
 }

@@ -101,23 +101,25 @@ struct MaterialRecord {
 // Operations below TEXTURE_CHECKERBOARD push a value, the others replace the values that they pop by one.
 CONST uint TEXTURE_CONSTANT = 0u;       // a
 CONST uint TEXTURE_IMAGE = 1u;          // image data.z at the mapped uv; a: scale; data.w & 1: invert
-CONST uint TEXTURE_FBM = 2u;            // a.x: roughness; data.w: octaves; rows in m0..m2, as for the next three
+CONST uint TEXTURE_FBM = 2u;            // a.x: roughness; data.w: octaves; data.z: first of Perlin's permutation in `texels`
 CONST uint TEXTURE_WRINKLED = 3u;       // the same
-CONST uint TEXTURE_WINDY = 4u;
-CONST uint TEXTURE_MARBLE = 5u;         // a: roughness, scale, variation; data.w: octaves
-CONST uint TEXTURE_CHECKERBOARD = 8u;   // of tex1, tex2; data.w: dimension (2 or 3)
+CONST uint TEXTURE_WINDY = 4u;          // the same, without a roughness
+CONST uint TEXTURE_MARBLE = 5u;         // the same, with a: roughness, scale, variation
+CONST uint TEXTURE_CHECKERBOARD = 8u;   // of tex1, tex2
 CONST uint TEXTURE_SCALE = 9u;          // of tex, scale
 CONST uint TEXTURE_MIX = 10u;           // of tex1, tex2, amount
 CONST uint TEXTURE_DIRECTION_MIX = 11u; // of tex1, tex2; a: unit direction in world space
-CONST uint TEXTURE_DOTS = 12u;          // of inside, outside
+CONST uint TEXTURE_DOTS = 12u;          // of inside, outside; data.z: the permutation
 CONST uint TEXTURE_BILERP = 13u;        // of v00, v01, v10, v11
 CONST uint TEXTURE_STACK = 16u;         // the depth and
 CONST uint TEXTURE_LENGTH = 1024u;      // the number of operations that the host guarantees not to exceed
 
-CONST uint MAPPING_UV = 0u;           // m0: su, sv, du, dv
-CONST uint MAPPING_SPHERICAL = 1u;    // m0..m2: rows of texture-from-world
-CONST uint MAPPING_CYLINDRICAL = 2u;  // rows
-CONST uint MAPPING_PLANAR = 3u;       // m0: vs, ds; m1: vt, dt, with the texture's transform in them
+CONST uint MAPPING_NONE = 0u;         // of operations that are the same everywhere
+CONST uint MAPPING_UV = 1u;           // m0: su, sv, du, dv
+CONST uint MAPPING_SPHERICAL = 2u;    // m0..m2: rows of texture-from-world
+CONST uint MAPPING_CYLINDRICAL = 3u;  // rows
+CONST uint MAPPING_PLANAR = 4u;       // m0: vs, ds; m1: vt, dt, with the texture's transform in them
+CONST uint MAPPING_SPACE = 5u;        // rows; not (s, t) but the point in the texture's space
 
 struct TextureOp {
     uvec4 data;   // operation, flags (1: last) | mapping << 8, image, option

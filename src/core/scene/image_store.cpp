@@ -1,6 +1,7 @@
 #include "core/scene/image_store.h"
 
 #include "core/image/image_io.h"
+#include "core/scene/noise_table.h"
 
 #include <fmt/format.h>
 
@@ -8,6 +9,7 @@
 #include <bit>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <limits>
 
 namespace lampyris {
@@ -76,6 +78,14 @@ uint32_t ImageStore::decode_table(TexelEncoding encoding) {
             scene_.texels[found->second + code] = std::bit_cast<uint32_t>(decode(code / 255.0, encoding));
     }
     return found->second;
+}
+
+uint32_t ImageStore::noise_permutation() {
+    if (!noise_permutation_) {
+        noise_permutation_ = reserve(std::size(kNoisePermutation), "the table of noise");
+        std::copy(std::begin(kNoisePermutation), std::end(kNoisePermutation), scene_.texels.begin() + *noise_permutation_);
+    }
+    return *noise_permutation_;
 }
 
 ImageStore::Texels ImageStore::pack(const Image& image, TexelEncoding encoding, const std::string& name, Location where) {

@@ -15,6 +15,7 @@
 #include <compare>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -43,6 +44,9 @@ class ImageStore {
     // The same for an image in memory; `encoding` applies to its storage as it does to a file's, `name` is for messages.
     uint32_t add(const Image& image, TexelEncoding encoding, ImageLookup lookup, const std::string& name, Location where);
 
+    // Where noise textures find their permutation of 0..255 in Scene::texels.
+    uint32_t noise_permutation();
+
     // What kernels decode, row by row from the top, and its average.
     std::vector<glm::vec3> pixels(uint32_t image) const;
     glm::vec3 average(uint32_t image) const;
@@ -61,6 +65,7 @@ class ImageStore {
     std::map<std::pair<std::string, TexelEncoding>, Texels> loaded_;  // by canonical path
     std::map<std::array<uint32_t, 6>, uint32_t> records_;             // by the record's words
     std::map<TexelEncoding, uint32_t> tables_;
+    std::optional<uint32_t> noise_permutation_;
 };
 
 }  // namespace lampyris

@@ -152,6 +152,7 @@ uint32_t TextureBuilder::emit(const TextureProgram& program, const std::string& 
     std::vector<kernel::TextureOp> ops = program.ops;
     for (kernel::TextureOp& op : ops) {
         if (const uint32_t effects = effects_of(op)) context_.scene.effects.ask(effects, asked_by);
+        if (effects_of(op) == kernel::EFFECT_NOISE) op.data.z = images().noise_permutation();
         if (op.data.x != kernel::TEXTURE_IMAGE) continue;
         op.data.z = load(requests_[op.data.z]);
         if (op.data.z == kNone) return kNone;

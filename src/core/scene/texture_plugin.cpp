@@ -11,7 +11,7 @@ namespace lampyris {
 
 namespace {
 
-constexpr const char* kMappings[] = {"uv", "spherical", "cylindrical", "planar"};  // in order of kernel::MAPPING_*
+constexpr const char* kMappings[] = {"uv", "spherical", "cylindrical", "planar"};  // in order of kernel::MAPPING_*, from MAPPING_UV on
 
 // Texture-from-world; the identity, and an error, where the transform in force cannot be inverted.
 glm::dmat4 texture_from_world(const TextureContext& context) {
@@ -93,11 +93,11 @@ TextureProgram TextureContext::combine(const std::vector<TextureProgram>& operan
 
 void TextureContext::read_mapping(kernel::TextureOp& op) {
     const std::string mapping = reader.get_string("mapping");
-    uint32_t kind = 0;
+    uint32_t kind = kernel::MAPPING_UV;
     for (uint32_t i = 0; i < std::size(kMappings); ++i)
-        if (mapping == kMappings[i]) kind = i;
-    op.data.y |= kind << 8;
+        if (mapping == kMappings[i]) kind = kernel::MAPPING_UV + i;
     if (kind == kernel::MAPPING_UV) {
+        op.data.y |= kind << 8;
         op.m0.x = reader.get_float("uscale");
         op.m0.y = reader.get_float("vscale");
         op.m0.z = reader.get_float("udelta");
@@ -105,15 +105,19 @@ void TextureContext::read_mapping(kernel::TextureOp& op) {
         return;
     }
     if (kind == kernel::MAPPING_PLANAR) {
+        op.data.y |= kind << 8;
         const glm::dmat4 m = texture_from_world(*this);
         op.m0 = planar_row(*this, m, "v1", {1.0, 0.0, 0.0}, reader.get_float("udelta"));
         op.m1 = planar_row(*this, m, "v2", {0.0, 1.0, 0.0}, reader.get_float("vdelta"));
         return;
     }
-    read_position_mapping(op);
+    read_transform(op, kind);
 }
 
-void TextureContext::read_position_mapping(kernel::TextureOp& op) {
+void TextureContext::read_position_mapping(kernel::TextureOp& op) { read_transform(op, kernel::MAPPING_SPACE); }
+
+void TextureContext::read_transform(kernel::TextureOp& op, uint32_t mapping) {
+    op.data.y |= mapping << 8;
     const glm::dmat4 m = texture_from_world(*this);
     op.m0 = row(m, 0);
     op.m1 = row(m, 1);

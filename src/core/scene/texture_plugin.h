@@ -48,6 +48,9 @@ struct TextureContext {
     void read_mapping(kernel::TextureOp& op);
     // Rows of texture-from-world, for textures in space.
     void read_position_mapping(kernel::TextureOp& op);
+
+ private:
+    void read_transform(kernel::TextureOp& op, uint32_t mapping);
 };
 
 // `specs`, and those of the mapping.

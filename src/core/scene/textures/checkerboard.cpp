@@ -8,8 +8,7 @@ namespace {
 TextureProgram make(TextureContext& context) {
     kernel::TextureOp op{};
     op.data.x = kernel::TEXTURE_CHECKERBOARD;
-    op.data.w = uint32_t(context.reader.get_int("dimension"));
-    if (op.data.w == 3)
+    if (context.reader.get_int("dimension") == 3)
         context.read_position_mapping(op);
     else
         context.read_mapping(op);
