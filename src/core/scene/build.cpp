@@ -70,6 +70,7 @@ BuiltScene build_scene(SceneDescription&& description, const BuildOptions& optio
     build_shapes(context);
     scene.record.bounds = bounding_sphere(scene);
     build_lights(context);
+    context.textures.define_all();  // mistakes in textures that nothing uses are told, too
     context.check_unused_materials();
     finish_lights(context);
     scene.record.counts = {uint32_t(scene.geometries.size()), uint32_t(scene.instances.size()), kernel::NONE, scene.effects.mask()};
