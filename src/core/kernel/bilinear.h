@@ -51,14 +51,21 @@ FN void patch_candidate(vec3 a00, vec3 a10, vec3 a01, vec3 a11, vec3 d, float u,
     float t_here = dot3(m, along) / n2;
     if (!(v >= -PATCH_EDGE && v <= 1.0f + PATCH_EDGE)) return;
     if (!(t_here > t_error && t_here < t)) return;
+    // The tangent plane at the hit must lie ahead, too. Of a ray that leaves a plane patch at a grazing angle the equation for
+    // u has nothing but rounding errors for coefficients, and the line found is one that the ray passes over.
+    float clamped_v = clamp(v, 0.0f, 1.0f);
+    vec3 normal = cross3(lerp3_of(clamped_v, a10 - a00, a11 - a01), along);
+    if ((dot3(from + clamped_v * along, normal) > 0.0f) != (dot3(d, normal) > 0.0f)) return;
     t = t_here;
-    uv = vec2(clamped_u, clamp(v, 0.0f, 1.0f));
+    uv = vec2(clamped_u, clamped_v);
 }
 
 // The first hit with 0 < t < t_max, and its parameters. The ray meets the patch where it meets a line of constant u: a
 // quadratic equation in u (A. Reshetov, "Cool Patches: A Geometric Approach to Ray/Bilinear Patch Intersections", Ray
 // Tracing Gems, 2019), here about the ray's origin so that patches far from the world's origin lose nothing.
-FN bool bilinear_hit(uint geometry, uint primitive, vec3 o, vec3 d, float t_max, OUT(float) t, OUT(vec2) uv) {
+//
+// Hits up to t_min do not count, nor those within rounding of the ray's origin.
+FN bool bilinear_hit_beyond(uint geometry, uint primitive, vec3 o, vec3 d, float t_min, float t_max, OUT(float) t, OUT(vec2) uv) {
     Patch b = load_patch(geometry, primitive);
     t = t_max;
     uv = vec2(0.0f);
@@ -81,7 +88,7 @@ FN bool bilinear_hit(uint geometry, uint primitive, vec3 o, vec3 d, float t_max,
     float q = -0.5f * (linear < 0.0f ? linear - root : linear + root);
     // The origin's distance within which a hit is the point that the ray starts from.
     float extent = max(max(max_component(abs(b.p00)), max_component(abs(b.p10))), max(max_component(abs(b.p01)), max_component(abs(b.p11))));
-    float t_error = gamma_bound(10.0f) * (max_component(abs(o)) + extent) / length_of(d);
+    float t_error = max(t_min, gamma_bound(10.0f) * (max_component(abs(o)) + extent) / length_of(d));
     if (q == 0.0f) {  // both roots are 0
         patch_candidate(a00, a10, a01, a11, d, 0.0f, t_error, t, uv);
     } else {
@@ -89,6 +96,10 @@ FN bool bilinear_hit(uint geometry, uint primitive, vec3 o, vec3 d, float t_max,
         if (quadratic != 0.0f) patch_candidate(a00, a10, a01, a11, d, q / quadratic, t_error, t, uv);
     }
     return t < t_max;
+}
+
+FN bool bilinear_hit(uint geometry, uint primitive, vec3 o, vec3 d, float t_max, OUT(float) t, OUT(vec2) uv) {
+    return bilinear_hit_beyond(geometry, primitive, o, d, 0.0f, t_max, t, uv);
 }
 
 // Fills everything of the surface at the patch's own uv but distance, ids, material and light.

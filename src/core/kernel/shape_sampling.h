@@ -37,7 +37,7 @@ FN bool shape_sample_from_area(vec3 ref_p, float pdf_area, INOUT(ShapeSample) s)
 
 // Below this solid angle (sr) a triangle is sampled by area: distance and cosine hardly vary over it, and it is cheaper.
 CONST float SPHERICAL_TRIANGLE_MIN = 0.1f;
-CONST float SPHERICAL_TRIANGLE_MAX = 6.0f;  // near 2 pi the reference point is next to the triangle's plane
+CONST float SPHERICAL_TRIANGLE_MAX = 6.22f;  // at 2 pi the reference point is in the triangle's plane
 
 // Solid angle of the triangle of unit vectors a, b, c (van Oosterom and Strackee 1983, equation 8).
 FN float spherical_triangle_area(vec3 a, vec3 b, vec3 c) {
@@ -279,11 +279,11 @@ FN bool sample_bilinear_light(uint geometry, uint primitive, vec3 ref_p, vec2 u,
 
 // The surface's uv may be vertex attributes, so the patch's own are found again with the ray.
 FN float pdf_bilinear_light(uint geometry, uint primitive, vec3 ref_p, vec3 position, vec3 ng, vec3 wi) {
+    float d2 = length_squared(position - ref_p);
     float t;
     vec2 uv;
-    if (!bilinear_hit(geometry, primitive, ref_p, wi, INFINITE_DISTANCE, t, uv)) return 0.0f;
-    Patch b = load_patch(geometry, primitive);
-    return pdf_of_area(patch_pdf_area(b, uv), length_squared(position - ref_p), dot3(ng, wi));
+    if (!bilinear_hit_beyond(geometry, primitive, ref_p, wi, 0.999f * sqrt(d2), INFINITE_DISTANCE, t, uv)) return 0.0f;
+    return pdf_of_area(patch_pdf_area(load_patch(geometry, primitive), uv), d2, dot3(ng, wi));
 }
 
 #endif

@@ -1,0 +1,123 @@
+// Scenes put together by hand, record by record, for tests of kernels that read a scene.
+#pragma once
+
+#include "core/scene/light_distribution.h"
+#include "core/scene/scene.h"
+
+#include <glm/glm.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <vector>
+
+namespace lampyris::test {
+
+inline kernel::TransformRecord transform_of(const glm::dmat4& to) {
+    const glm::dmat4 from = glm::inverse(to);
+    const auto row = [](const glm::dmat4& m, int i) { return glm::vec4(float(m[0][i]), float(m[1][i]), float(m[2][i]), float(m[3][i])); };
+    return {row(to, 0), row(to, 1), row(to, 2), row(from, 0), row(from, 1), row(from, 2)};
+}
+
+class TestScene {
+ public:
+    Scene scene;
+    std::vector<float> powers;  // of the lights, in order
+
+    TestScene() {
+        scene.transforms.push_back(transform_of(glm::dmat4(1.0)));
+        scene.instances.push_back({scene.transforms[0], glm::uvec4(0)});
+        scene.instance_sets.push_back(0);
+        kernel::MaterialRecord material{};
+        material.data = {kernel::MATERIAL_DIFFUSE, 0, kernel::NONE, kernel::NONE};
+        material.textures = material.textures2 = glm::uvec4(kernel::NONE);
+        material.color0 = glm::vec4(0.5f);
+        scene.materials.push_back(material);
+    }
+
+    uint32_t add_geometry(uint32_t kind, uint32_t flags, uint32_t primitives) {
+        kernel::GeometryRecord g{};
+        g.data = {kind, flags, uint32_t(scene.indices.size()), uint32_t(scene.positions.size() / 3)};
+        g.ids = {0, kernel::NONE, kernel::NONE, 0};
+        g.attributes = {uint32_t(scene.normals.size() / 3), uint32_t(scene.uvs.size() / 2), primitives, 0};
+        g.alpha = glm::vec4(1.0f);
+        scene.geometries.push_back(g);
+        return uint32_t(scene.geometries.size() - 1);
+    }
+    uint32_t add_quadric(uint32_t kind, glm::vec4 params, const glm::dmat4& to = glm::dmat4(1.0), uint32_t flags = 0) {
+        const uint32_t index = add_geometry(kind, flags, 1);
+        scene.geometries[index].params = params;
+        scene.geometries[index].ids.w = uint32_t(scene.transforms.size());
+        scene.transforms.push_back(transform_of(to));
+        return index;
+    }
+    // Four corners make a bilinear patch (p00, p10, p01, p11), three a triangle.
+    template <size_t n>
+    uint32_t add_polygon(const std::array<glm::vec3, n>& corners, uint32_t flags = 0) {
+        static_assert(n == 3 || n == 4);
+        const uint32_t index = add_geometry(n == 3 ? kernel::GEOMETRY_TRIANGLES : kernel::GEOMETRY_BILINEAR, flags, 1);
+        for (uint32_t i = 0; i < n; ++i) {
+            scene.indices.push_back(i);
+            for (int axis = 0; axis < 3; ++axis) scene.positions.push_back(corners[i][axis]);
+        }
+        return index;
+    }
+    // Makes a geometry of one primitive a light.
+    uint32_t add_area_light(uint32_t geometry, glm::vec3 radiance, uint32_t flags = 0) {
+        kernel::GeometryRecord& g = scene.geometries[geometry];
+        kernel::LightRecord light{};
+        const bool triangle = g.data.x == kernel::GEOMETRY_TRIANGLES;
+        light.data = {triangle ? kernel::LIGHT_TRIANGLE : kernel::LIGHT_GEOMETRY, flags, kernel::NONE, kernel::NONE};
+        light.ids = {geometry, 0, 0, 0};
+        if (triangle) {
+            std::array<glm::vec3, 3> p;
+            for (uint32_t i = 0; i < 3; ++i) {
+                const float* v = &scene.positions[3 * (g.data.w + scene.indices[g.data.z + i])];
+                p[i] = {v[0], v[1], v[2]};
+            }
+            light.v0 = glm::vec4(p[0], 0.5f * glm::length(glm::cross(p[1] - p[0], p[2] - p[0])));
+            light.v1 = glm::vec4(p[1], 0.0f);
+            light.v2 = glm::vec4(p[2], 0.0f);
+        }
+        g.ids.y = uint32_t(scene.lights.size());
+        return add_light(light, radiance);
+    }
+    uint32_t add_light(kernel::LightRecord light, glm::vec3 emission, float power = 1.0f) {
+        light.emission = glm::vec4(emission, 0.0f);
+        scene.lights.push_back(light);
+        powers.push_back(power);
+        return uint32_t(scene.lights.size() - 1);
+    }
+    // A picture of floats, one channel, row by row from the top.
+    uint32_t add_image(const std::vector<float>& values, uint32_t width, uint32_t height, uint32_t wrap) {
+        kernel::ImageRecord image{};
+        image.data = {uint32_t(scene.texels.size()), width, height, kernel::TEXEL_R32F | wrap << 8 | kernel::FILTER_POINT << 16};
+        for (const float value : values) scene.texels.push_back(std::bit_cast<uint32_t>(value));
+        scene.images.push_back(image);
+        return uint32_t(scene.images.size() - 1);
+    }
+
+    // Fills what is derived. Arrays that are empty get an unused element, so that every backend can bind them.
+    const Scene& finish() {
+        choose_lights(scene, powers);
+        scene.sets.assign(1, {0, uint32_t(scene.geometries.size())});
+        scene.record.counts = {uint32_t(scene.geometries.size()), 1, 0, 0};
+        scene.record.bounds = glm::vec4(0.0f, 0.0f, 0.0f, 100.0f);
+        scene.positions.resize(scene.positions.size() + 4);
+        const auto at_least_one = [](auto& array) {
+            if (array.empty()) array.resize(1);
+        };
+        at_least_one(scene.indices);
+        at_least_one(scene.normals);
+        at_least_one(scene.uvs);
+        at_least_one(scene.texture_ops);
+        at_least_one(scene.images);
+        at_least_one(scene.texels);
+        at_least_one(scene.lights);
+        at_least_one(scene.distributions);
+        return scene;
+    }
+};
+
+}  // namespace lampyris::test
