@@ -141,7 +141,9 @@ TEST(BsdfLayered, DensityIsPositiveAndOfOrderOne) {
                 EXPECT_TRUE(s.eval.w > 0 || s.eval.x == 0);
                 bool closed_form = !c.layers.metal && c.layers.alpha == 0 && c.layers.albedo == 0;
                 EXPECT_EQ(s.rest.z, closed_form ? 0 : 1) << "pdf_is_proportional";
-                if (closed_form && s.lobe() < kSpecular) EXPECT_NEAR(s.pdf(), s.eval.w, 1e-5);
+                if (closed_form && s.lobe() < kSpecular) {
+                    EXPECT_NEAR(s.pdf(), s.eval.w, 1e-5);
+                }
             }
             std::vector<vec4> wi;
             for (int i = 0; i < 100; ++i)
