@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <numeric>
+#include <unistd.h>
 
 namespace lampyris {
 namespace {
@@ -148,7 +149,7 @@ class ShaderCacheTest : public testing::Test {
  protected:
     void SetUp() override {
         if (!has_vulkan()) GTEST_SKIP() << "no Vulkan device";
-        folder_ = std::filesystem::path(testing::TempDir()) / "lampyris-shader-cache-test";
+        folder_ = std::filesystem::path(testing::TempDir()) / ("lampyris-shader-cache-test-" + std::to_string(getpid()));
         std::filesystem::remove_all(folder_);
     }
     void TearDown() override { std::filesystem::remove_all(folder_); }

@@ -33,7 +33,7 @@ struct TextureScene {
         scene.texels.assign(std::begin(kNoisePermutation), std::end(kNoisePermutation));  // noise finds its table at 0
         scene.images.resize(1);
         scene.lights.resize(1);
-        scene.record.counts = {1, 1, 0, 0};
+        scene.record.counts = {1, 1, 0, kernel::kAllEffects};
     }
 
     // Only the first geometry is traced; the others are there to be asked for their opacity.

@@ -179,7 +179,7 @@ NamedMaterial "both"
     EXPECT_EQ(plastic.floats, vec4(0.3f, 0.3f, 1.5f, 0.0f));
     EXPECT_EQ(plastic.floats2.x, 0.01f);
     EXPECT_EQ(plastic.extra.x, 10u);
-    EXPECT_EQ(text.scene().effects.mask(), EFFECT_MIX | EFFECT_CONDUCTOR | EFFECT_ROUGH | EFFECT_COAT | EFFECT_DIELECTRIC);
+    EXPECT_EQ(text.scene().effects.mask(), EFFECT_MIX | EFFECT_CONDUCTOR | EFFECT_ROUGH | EFFECT_ANISOTROPIC | EFFECT_COAT | EFFECT_DIELECTRIC);
 }
 
 }  // namespace

@@ -20,11 +20,12 @@ FN vec3 path_direct_light(IN(Surface) s, IN(Frame) frame, IN(Bsdf) bsdf, vec3 wo
     LightSample light;
     if (!light_sample(s.position, u_choice, u, light)) return vec3(0.0f);
     vec3 wi = to_local(frame, light.wi);
-    vec3 f = bsdf_eval(bsdf, wo, wi, TRANSPORT_RADIANCE) * abs(wi.z);
+    float density;
+    vec3 f = bsdf_eval_pdf(bsdf, wo, wi, TRANSPORT_RADIANCE, density) * abs(wi.z);
     if (is_black(f)) return vec3(0.0f);
     if (scene_occluded(s.position, s.error, s.ng, light.wi, light.distance, rays)) return vec3(0.0f);
     float weight = 1.0f;
-    if (light.is_delta == 0u) weight = power_heuristic(light.pdf, bsdf_pdf(bsdf, wo, wi, TRANSPORT_RADIANCE));
+    if (light.is_delta == 0u) weight = power_heuristic(light.pdf, density);
     return f * light.radiance * (weight / light.pdf);
 }
 
