@@ -44,4 +44,28 @@ FN vec3 film_sensor(vec3 radiance) {
     return limit > 0.0f && largest > limit ? value * (limit / largest) : value;
 }
 
+// One sample of a pixel: the camera's ray, the weight of the pixel filter, and the numbers from the first free dimension on.
+struct CameraSample {
+    Ray ray;
+    float weight;
+    uint pass;
+    Sampler numbers;
+};
+
+// The i-th sample of the window's range, at a pixel of the window. The filter and the lens take CAMERA_DIMENSIONS.
+CONST uint CAMERA_DIMENSIONS = 4u;
+FN CameraSample camera_sample(IN(FilmWindow) w, uvec2 pixel, uint i) {
+    CameraSample s;
+    uint x = w.pixels.x + pixel.x;
+    uint y = w.pixels.y + pixel.y;
+    s.pass = w.samples.x + i;
+    s.numbers = sampler_begin(y * scene[0].camera.film.x + x, s.pass, w.samples.z, w.samples.w);
+    vec2 offset = pixel_filter_sample(sample_2d_at(s.numbers, 0u), s.weight);
+    vec2 u_lens = vec2(0.5f);
+    if (HAS(EFFECT_DEPTH_OF_FIELD)) u_lens = sample_2d_at(s.numbers, 2u);
+    s.ray = camera_ray(vec2(float(x) + 0.5f + offset.x, float(y) + 0.5f + offset.y), u_lens);
+    s.numbers.dimension = CAMERA_DIMENSIONS;
+    return s;
+}
+
 #endif

@@ -10,9 +10,8 @@ BUFFER_RO(0, FilmWindow, window)
 BUFFER_RO(1, PathParams, params)
 BUFFER_RW(2, FilmPixel, film)
 
-// Numbers that a path takes from its sampler: lens and filter, then a fixed number per vertex, so that a dimension means
-// the same in every sample whatever the path met before.
-CONST uint PATH_CAMERA_DIMENSIONS = 4u;
+// After the camera's numbers each vertex has a fixed number of dimensions, so that a dimension means the same in every sample
+// whatever the path met before.
 CONST uint PATH_VERTEX_DIMENSIONS = 8u;
 
 // Direct light at a surface point from one sampled light.
@@ -79,7 +78,7 @@ FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, IN(Sampler) numbers, 
             pixel.squares.w += distance_of(s.position, ray_origin);
         }
         if (depth >= params[0].maxdepth) break;
-        uint dimension = PATH_CAMERA_DIMENSIONS + uint(depth) * PATH_VERTEX_DIMENSIONS;
+        uint dimension = CAMERA_DIMENSIONS + uint(depth) * PATH_VERTEX_DIMENSIONS;
         depth += 1;
 
         vec3 wo = to_local(frame, -direction);
@@ -115,24 +114,15 @@ FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, IN(Sampler) numbers, 
 }
 
 KERNEL(path) {
-    uvec4 pixels = window[0].pixels;
-    uvec4 range = window[0].samples;
-    uvec2 local = film_pixel_of(index, pixels);
-    uint place = local.y * pixels.z + local.x;
-    uint x = pixels.x + local.x;
-    uint y = pixels.y + local.y;
+    FilmWindow w = window[0];
+    uvec2 local = film_pixel_of(index, w.pixels);
+    uint place = local.y * w.pixels.z + local.x;
     FilmPixel pixel = film[place];
     uint rays = 0u;
-    for (uint i = 0u; i < range.y; ++i) {
-        uint pass = range.x + i;
-        Sampler numbers = sampler_begin(y * scene[0].camera.film.x + x, pass, range.z, range.w);
-        float weight;
-        vec2 offset = pixel_filter_sample(sample_2d(numbers), weight);
-        vec2 u_lens = vec2(0.5f);
-        if (HAS(EFFECT_DEPTH_OF_FIELD)) u_lens = sample_2d(numbers);
-        Ray ray = camera_ray(vec2(float(x) + 0.5f + offset.x, float(y) + 0.5f + offset.y), u_lens);
-        vec3 radiance = path_radiance(ray.origin, ray.direction, numbers, pixel, rays);
-        film_add(pixel, film_sensor(radiance), weight, pass);
+    for (uint i = 0u; i < w.samples.y; ++i) {
+        CameraSample camera = camera_sample(w, local, i);
+        vec3 radiance = path_radiance(camera.ray.origin, camera.ray.direction, camera.numbers, pixel, rays);
+        film_add(pixel, film_sensor(radiance), camera.weight, camera.pass);
     }
     pixel.counts.y += rays;
     film[place] = pixel;
