@@ -1,6 +1,7 @@
 // lampyris plugins [KIND [NAME]]: what is registered, and the parameters that it takes.
 #include "commands/command.h"
 #include "core/error.h"
+#include "core/plugin.h"
 #include "core/registry.h"
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace lampyris {
 namespace {
@@ -20,6 +22,7 @@ constexpr const char* kSchema = "lampyris.plugins/1";
 
 struct PluginsOptions {
     std::string kind, name;
+    std::vector<std::string> files;
     bool json = false, markdown = false;
 };
 
@@ -124,6 +127,7 @@ std::vector<const RegistryBase*> wanted_kinds(const PluginsOptions& options) {
 
 int plugins(const PluginsOptions& options) {
     check_registrations();
+    load_plugins(options.files);
     const std::vector<const RegistryBase*> kinds = wanted_kinds(options);
     if (options.json) {
         Json json;
@@ -151,6 +155,7 @@ void add_plugins(CLI::App& parent, std::function<int()>& run) {
     command->add_option("NAME", options->name, "one of that kind: tells its parameters");
     command->add_flag("--json", options->json, "print JSON (docs/describe.md)");
     command->add_flag("--markdown", options->markdown, "print the reference page");
+    command->add_option("--plugin", options->files, "Load a plugin first; may be given several times")->type_name("FILE.so");
     command->callback([&run, options] { run = [options] { return plugins(*options); }; });
 }
 

@@ -7,7 +7,6 @@
 
 #include <charconv>
 #include <cmath>
-#include <cstdlib>
 
 namespace lampyris {
 namespace {
@@ -73,8 +72,7 @@ std::vector<std::pair<std::string, std::string>> RenderOptions::settings_of(cons
 }
 
 void RenderOptions::finish() {
-    if (const char* path = std::getenv("LAMPYRIS_PLUGIN_PATH")) load_plugin_path(path);
-    for (const std::string& plugin : plugins) load_plugin(plugin);
+    load_plugins(plugins);
     if (!texts.resolution.empty()) {
         const std::vector<int> size = parse_integers(texts.resolution, 'x', 2, "--resolution", "WIDTHxHEIGHT, for example 640x480");
         if (size[0] < 1 || size[1] < 1) throw InputError(fmt::format("error: --resolution {}: both sides must be at least 1", texts.resolution));

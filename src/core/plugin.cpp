@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -78,6 +79,11 @@ void load_plugin_path(std::string_view list) {
         std::sort(files.begin(), files.end());
         for (const std::string& file : files) load_plugin(file);
     }
+}
+
+void load_plugins(const std::vector<std::string>& files) {
+    if (const char* path = std::getenv("LAMPYRIS_PLUGIN_PATH")) load_plugin_path(path);
+    for (const std::string& file : files) load_plugin(file);
 }
 
 }  // namespace lampyris

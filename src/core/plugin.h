@@ -4,6 +4,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace lampyris {
 
@@ -14,6 +15,9 @@ void load_plugin(const std::string& file);
 // Loads what a PATH-like list (LAMPYRIS_PLUGIN_PATH) names: files, and folders, of which every *.so in order of name.
 // Throws as load_plugin does.
 void load_plugin_path(std::string_view list);
+
+// What a command loads before it looks anything up: LAMPYRIS_PLUGIN_PATH of the environment, then the files of --plugin.
+void load_plugins(const std::vector<std::string>& files);
 
 // What this library asks of a plugin's `lampyris_plugin_abi`: the version, and a hash of the headers it was built with.
 std::string_view plugin_abi();
