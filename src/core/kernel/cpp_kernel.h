@@ -37,6 +37,12 @@ inline uint floatBitsToUint(float x) { return std::bit_cast<uint>(x); }
 inline float uintBitsToFloat(uint x) { return std::bit_cast<float>(x); }
 inline int floatBitsToInt(float x) { return std::bit_cast<int>(x); }
 inline float intBitsToFloat(int x) { return std::bit_cast<float>(x); }
+inline uint bitfieldReverse(uint x) {
+    x = __builtin_bswap32(x);
+    x = ((x & 0x0f0f0f0fu) << 4u) | ((x & 0xf0f0f0f0u) >> 4u);
+    x = ((x & 0x33333333u) << 2u) | ((x & 0xccccccccu) >> 2u);
+    return ((x & 0x55555555u) << 1u) | ((x & 0xaaaaaaaau) >> 1u);
+}
 inline bool isnan(float x) { return x != x; }
 inline bool isinf(float x) { return abs(x) > 3.4028235e38f; }
 inline void atomic_add_u32(uint* place, uint value) { std::atomic_ref<uint>(*place).fetch_add(value, std::memory_order_relaxed); }

@@ -32,15 +32,6 @@ FN uvec3 pcg3d(uvec3 v) {
 // [0, 1) with 24 bits.
 FN float unit_float(uint bits) { return float(bits >> 8u) * 5.9604644775390625e-8f; }
 
-FN uint reverse_bits(uint x) {
-    x = (x << 16u) | (x >> 16u);
-    x = ((x & 0x00ff00ffu) << 8u) | ((x & 0xff00ff00u) >> 8u);
-    x = ((x & 0x0f0f0f0fu) << 4u) | ((x & 0xf0f0f0f0u) >> 4u);
-    x = ((x & 0x33333333u) << 2u) | ((x & 0xccccccccu) >> 2u);
-    x = ((x & 0x55555555u) << 1u) | ((x & 0xaaaaaaaau) >> 1u);
-    return x;
-}
-
 // Owen scrambling of bit-reversed numbers by hashing (Laine and Karras 2011, constants by Vegdahl 2021; used as in Burley
 // 2020, "Practical Hash-based Owen Scrambling").
 FN uint scramble_reversed(uint x, uint seed) {
@@ -65,6 +56,7 @@ FN uint sobol_second_reversed(uint x) {
 
 struct Sampler {
     uint key;        // of seed and pixel
+    uint reversed;   // the sample's index, bits in reverse order
     uint index;      // of the sample
     uint dimension;  // of the next number
     uint kind;
@@ -73,6 +65,7 @@ struct Sampler {
 FN Sampler sampler_begin(uint pixel, uint sample_index, uint seed, uint kind) {
     Sampler s;
     s.key = hash_combine(hash32(seed + 0x68bc21ebu), pixel);
+    s.reversed = bitfieldReverse(sample_index);
     s.index = sample_index;
     s.dimension = 0u;
     s.kind = kind;
@@ -83,8 +76,8 @@ FN Sampler sampler_begin(uint pixel, uint sample_index, uint seed, uint kind) {
 FN float sample_1d_at(IN(Sampler) s, uint dimension) {
     if (s.kind == SAMPLER_INDEPENDENT) return unit_float(pcg3d(uvec3(s.key, s.index, dimension)).x);
     uint seed = hash_combine(s.key, dimension);
-    uint shuffled = reverse_bits(scramble_reversed(reverse_bits(s.index), seed));
-    return unit_float(reverse_bits(scramble_reversed(shuffled, hash32(seed ^ 0xa511e9b3u))));
+    uint shuffled = bitfieldReverse(scramble_reversed(s.reversed, seed));
+    return unit_float(bitfieldReverse(scramble_reversed(shuffled, hash32(seed ^ 0xa511e9b3u))));
 }
 
 FN vec2 sample_2d_at(IN(Sampler) s, uint dimension) {
@@ -93,9 +86,9 @@ FN vec2 sample_2d_at(IN(Sampler) s, uint dimension) {
         return vec2(unit_float(bits.x), unit_float(bits.y));
     }
     uint seed = hash_combine(s.key, dimension);
-    uint shuffled = reverse_bits(scramble_reversed(reverse_bits(s.index), seed));
-    uint x = reverse_bits(scramble_reversed(shuffled, hash32(seed ^ 0xa511e9b3u)));
-    uint y = reverse_bits(scramble_reversed(sobol_second_reversed(shuffled), hash32(seed ^ 0x63d83595u)));
+    uint shuffled = bitfieldReverse(scramble_reversed(s.reversed, seed));
+    uint x = bitfieldReverse(scramble_reversed(shuffled, hash32(seed ^ 0xa511e9b3u)));
+    uint y = bitfieldReverse(scramble_reversed(sobol_second_reversed(shuffled), hash32(seed ^ 0x63d83595u)));
     return vec2(unit_float(x), unit_float(y));
 }
 
