@@ -14,7 +14,8 @@ KERNEL(ao) {
     uint place = local.y * w.pixels.z + local.x;
     FilmPixel pixel = film[place];
     uint rays = 0u;
-    for (uint i = 0u; i < w.samples.y; ++i) {
+    uint i = 0u;
+    for (; i < w.samples.y; ++i) {
         CameraSample camera = camera_sample(w, local, i);
         float seen = 0.0f;
         Surface s;
@@ -32,6 +33,7 @@ KERNEL(ao) {
         }
         film_add(pixel, vec3(seen), camera.weight, camera.pass);
     }
+    if (i < w.samples.y) REPORT_UNFINISHED();
     pixel.counts.y += rays;
     film[place] = pixel;
 }

@@ -41,7 +41,9 @@ FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, IN(Sampler) numbers, 
     bool first = true;
     int depth = 0;
     uint passed = 0u;
-    for (;;) {
+    bool alive = true;
+    while (alive) {
+        alive = false;  // every way out of the loop but its end leaves it so
         Surface s;
         if (!intersect_scene(origin, direction, s, rays)) {
             if (HAS(EFFECT_ENVIRONMENT)) {
@@ -66,6 +68,7 @@ FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, IN(Sampler) numbers, 
                 REPORT_UNFINISHED();
                 break;
             }
+            alive = true;
             continue;
         }
         Frame frame;
@@ -109,7 +112,9 @@ FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, IN(Sampler) numbers, 
             if (sample_1d_at(numbers, dimension + 6u) >= survival) break;
             throughput = throughput / survival;
         }
+        alive = true;
     }
+    if (alive) REPORT_UNFINISHED();  // the driver ended the loop
     return radiance;
 }
 
@@ -119,11 +124,13 @@ KERNEL(path) {
     uint place = local.y * w.pixels.z + local.x;
     FilmPixel pixel = film[place];
     uint rays = 0u;
-    for (uint i = 0u; i < w.samples.y; ++i) {
+    uint i = 0u;
+    for (; i < w.samples.y; ++i) {
         CameraSample camera = camera_sample(w, local, i);
         vec3 radiance = path_radiance(camera.ray.origin, camera.ray.direction, camera.numbers, pixel, rays);
         film_add(pixel, film_sensor(radiance), camera.weight, camera.pass);
     }
+    if (i < w.samples.y) REPORT_UNFINISHED();
     pixel.counts.y += rays;
     film[place] = pixel;
 }
