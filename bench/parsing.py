@@ -16,12 +16,16 @@ GOALS = {
 def main() -> None:
     """Run parse_bench, print a table, and write the same as JSON."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--build", type=Path, default=Path("build/release"), help="folder with the benchmarks' programs")
+    parser.add_argument(
+        "--build", type=Path, default=Path("build/release"), help="folder with the benchmarks' programs"
+    )
     parser.add_argument("--json", type=Path, help="where to write the results")
     arguments = parser.parse_args()
     # Configuring again finds Google Benchmark where it was installed since.
     subprocess.run(["cmake", arguments.build], check=True, stdout=subprocess.DEVNULL)
-    subprocess.run(["cmake", "--build", arguments.build, "--target", "parse_bench"], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(
+        ["cmake", "--build", arguments.build, "--target", "parse_bench"], check=True, stdout=subprocess.DEVNULL
+    )
     with tempfile.TemporaryDirectory() as folder:
         output = Path(folder) / "result.json"
         command = [arguments.build / "parse_bench", f"--benchmark_out={output}", "--benchmark_out_format=json"]

@@ -82,7 +82,17 @@ def test_plugins_come_from_registrations(program):
     result = json.loads(done.stdout)
     assert result["schema"] == "lampyris.plugins/1"
     kinds = {kind["kind"]: {plugin["name"] for plugin in kind["plugins"]} for kind in result["kinds"]}
-    assert {"shape", "material", "texture", "light", "area light", "camera", "film", "filter", "sampler"} <= kinds.keys()
+    assert {
+        "shape",
+        "material",
+        "texture",
+        "light",
+        "area light",
+        "camera",
+        "film",
+        "filter",
+        "sampler",
+    } <= kinds.keys()
     assert {"path", "ao"} <= kinds["integrator"]
     assert {"trianglemesh", "plymesh", "loopsubdiv", "bilinearmesh", "sphere", "disk", "cylinder"} <= kinds["shape"]
     # Every parameter is documented.

@@ -27,7 +27,13 @@ def test_finds_nothing(fuzz_build, source_dir, tmp_path, target):
     folder = source_dir / "tests/fuzz"
     dictionary = folder / ("pbrt.dict" if target == "parse" else "ply.dict")
     limits = [f"-max_total_time={SECONDS // len(TARGETS)}", "-rss_limit_mb=1024", "-timeout=20", "-max_len=4096"]
-    command = [fuzz_build / f"{target}_fuzz", *limits, f"-dict={dictionary}", f"-artifact_prefix={fuzz_build}/", tmp_path]
+    command = [
+        fuzz_build / f"{target}_fuzz",
+        *limits,
+        f"-dict={dictionary}",
+        f"-artifact_prefix={fuzz_build}/",
+        tmp_path,
+    ]
     run = subprocess.run([*command, folder / "corpus" / target], capture_output=True, text=True, check=False)
     assert run.returncode == 0, f"finding left in {fuzz_build}:\n{run.stderr[-4000:]}"
     assert "DONE" in run.stderr
