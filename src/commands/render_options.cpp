@@ -89,10 +89,10 @@ void RenderOptions::finish() {
     }
     if (!texts.time.empty()) limits.seconds = parse_duration(texts.time);
     if (!texts.max_memory.empty()) device.max_memory = parse_size(texts.max_memory);
-    for (const std::optional<uint64_t>& count : {texts.spp, texts.passes}) {
+    for (const std::optional<int64_t>& count : {texts.spp, texts.passes}) {
         if (!count) continue;
-        if (*count == 0) throw InputError("error: --spp and --passes must be at least 1");
-        limits.passes = limits.passes ? std::min(*limits.passes, *count) : *count;
+        if (*count < 1) throw InputError("error: --spp and --passes must be at least 1");
+        limits.passes = limits.passes ? std::min(*limits.passes, uint64_t(*count)) : uint64_t(*count);
     }
     if (texts.target_error) {
         if (!(*texts.target_error > 0.0)) throw InputError("error: --target-error must be above 0");

@@ -38,7 +38,7 @@ struct RenderOptions {
     struct Texts {
         std::string resolution, crop, time, max_memory, replay;
         std::vector<std::string> settings;  // SECTION.KEY=VALUE
-        std::optional<uint64_t> spp, passes;
+        std::optional<int64_t> spp, passes;
         std::optional<double> target_error;
     } texts;
 
