@@ -11,6 +11,7 @@ namespace {
 Rendered render_description(SceneDescription description, const RenderSettings& settings, Diagnostics& diagnostics) {
     BuildOptions options;
     options.resolution = settings.resolution;
+    options.crop = settings.crop;
     BuiltScene built = build_scene(std::move(description), options, diagnostics);
     diagnostics.throw_if_errors();
     PluginChoice choice;
@@ -33,6 +34,7 @@ Rendered render_description(SceneDescription description, const RenderSettings& 
     session.seed = settings.seed;
     session.sampler = settings.sampler.value_or(built.settings.sampler) == "independent" ? kernel::SAMPLER_INDEPENDENT : kernel::SAMPLER_SOBOL;
     session.max_slice = settings.slice;
+    session.start_at(settings.first_pass);
     integrator->render(session);
     film.download();
     Rendered result;

@@ -22,6 +22,8 @@ struct RenderSettings {
     std::optional<std::string> sampler;  // in place of the scene's: "independent", "sobol"
     std::string integrator;              // "name:key=value"; empty: the scene's
     std::map<std::string, std::string> device_settings;
+    std::optional<std::array<int, 4>> crop;
+    uint32_t first_pass = 0;
     uint32_t slice = 0;  // passes per dispatch; 0: as the session decides
 };
 

@@ -7,6 +7,7 @@
 #include <embree3/rtcore_config.h>
 #include <fmt/format.h>
 #include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 #include <xmmintrin.h>
@@ -17,6 +18,7 @@
 #include <cstring>
 #include <fstream>
 #include <new>
+#include <optional>
 #include <thread>
 
 namespace lampyris {
@@ -93,7 +95,12 @@ class CpuDevice final : public Device {
  public:
     CpuDevice(CpuTracerKind tracer, const DeviceOptions& options) : tracer_(tracer), meter_(std::make_shared<MemoryMeter>()) {
         meter_->limit = options.max_memory;
+        if (!options.device.empty() && options.device != "0" && description().find(options.device) == std::string::npos)
+            throw InputError(fmt::format("error: --device {}: the CPU backends have one device: 0, {}", options.device, description()));
         threads_ = options.threads ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+        // TBB starts as many threads as the machine has, whatever an arena asks for, unless it is told.
+        if (threads_ > std::thread::hardware_concurrency())
+            more_threads_.emplace(oneapi::tbb::global_control::max_allowed_parallelism, threads_);
         arena_.initialize(int(threads_));
     }
     std::string backend() const override { return tracer_ == CpuTracerKind::embree ? "cpu" : "cpu-bvh2"; }
@@ -164,6 +171,7 @@ class CpuDevice final : public Device {
     CpuTracerKind tracer_;
     std::shared_ptr<MemoryMeter> meter_;
     unsigned threads_ = 1;
+    std::optional<oneapi::tbb::global_control> more_threads_;
     tbb::task_arena arena_;
     DeviceStatistics statistics_;
 };

@@ -1,0 +1,40 @@
+// backends_test at the full size of the pictures and with 512 samples per pixel, and the larger scenes with one: minutes.
+#include "support/agreement.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+namespace lampyris::test {
+namespace {
+
+class BackendsLongTest : public testing::TestWithParam<std::string> {};
+
+TEST_P(BackendsLongTest, PixelsAreTheSameOnVulkan) {
+    RenderSettings settings;
+    settings.samples = 512;
+    settings.seed = 22;
+    expect_agreement(GetParam(), "vulkan", settings, 1e-3, 0.99);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, BackendsLongTest, testing::Values("reference/diffuse", "reference/dielectric-smooth", "reference/textures"),
+                         [](const auto& info) { return test_name(info.param); });
+
+class LargeScenesTest : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
+
+TEST_P(LargeScenesTest, OneSampleIsTheSame) {
+    const auto& [scene, backend] = GetParam();
+    if (!std::filesystem::exists(scene_path(scene))) GTEST_SKIP() << scene << " is not in the tree";
+    RenderSettings settings;
+    settings.samples = 1;
+    settings.seed = 23;
+    expect_agreement(scene, backend, settings, 1e-5, 0.999);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, LargeScenesTest,
+                         testing::Combine(testing::Values("cornell-box/scene", "veach-mis/scene", "veach-bidir/scene", "coffee/scene"),
+                                          testing::Values("cpu-bvh2", "vulkan")),
+                         [](const auto& info) { return test_name(std::get<0>(info.param) + "_" + std::get<1>(info.param)); });
+
+}  // namespace
+}  // namespace lampyris::test

@@ -1,0 +1,48 @@
+// The same scene with the same seed on different backends: one kernel source, one image. What may differ, and why, is told in
+// docs/determinism.md. No chance is involved: seeds are fixed.
+#include "support/agreement.h"
+
+#include <gtest/gtest.h>
+
+namespace lampyris::test {
+namespace {
+
+std::vector<std::string> other_backends() {
+    std::vector<std::string> names;
+    for (const std::string& name : usable_backends())
+        if (name != "cpu") names.push_back(name);
+    return names;
+}
+
+class BackendsTest : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
+
+TEST_P(BackendsTest, OneSampleIsTheSame) {
+    const auto& [scene, backend] = GetParam();
+    RenderSettings settings;
+    settings.samples = 1;
+    settings.seed = 20;
+    expect_agreement(scene, backend, settings, 1e-5, 0.999);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, BackendsTest, testing::Combine(testing::ValuesIn(small_scenes()), testing::ValuesIn(other_backends())),
+                         [](const auto& info) { return test_name(std::get<0>(info.param) + "_" + std::get<1>(info.param)); });
+
+// Many samples: what diverges in a few of them moves the pixel a little.
+class ManySamplesTest : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
+
+TEST_P(ManySamplesTest, PixelsAreTheSame) {
+    const auto& [scene, backend] = GetParam();
+    RenderSettings settings;
+    settings.resolution = {{20, 20}};
+    settings.samples = 512;
+    settings.seed = 21;
+    expect_agreement(scene, backend, settings, 1e-3, 0.99);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, ManySamplesTest,
+                         testing::Combine(testing::Values("reference/diffuse", "reference/dielectric-smooth", "reference/conductor-rough"),
+                                          testing::ValuesIn(other_backends())),
+                         [](const auto& info) { return test_name(std::get<0>(info.param) + "_" + std::get<1>(info.param)); });
+
+}  // namespace
+}  // namespace lampyris::test

@@ -1,0 +1,33 @@
+// How far two backends, given the same seed, show the same image.
+#pragma once
+
+#include "support/render.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace lampyris::test {
+
+struct Agreement {
+    size_t pixels = 0;
+    size_t identical = 0;  // to the bit
+    size_t within = 0;     // identical, or each channel within the relative tolerance
+    double largest = 0.0;  // relative difference of a channel
+    std::vector<std::array<int, 2>> diverging;  // the pixels that are not within, the first few: for --replay
+    double share() const { return double(within) / double(pixels); }
+};
+
+// Relative to the larger of the two numbers, or to 1e-3 of the image's largest where both are darker.
+Agreement agreement(const Rendered& a, const Rendered& b, double tolerance);
+
+// Every scene of the folders scenes/reference and scenes/analytic, as paths relative to scenes/ without extension; sorted.
+std::vector<std::string> small_scenes();
+std::string scene_path(const std::string& name);
+// A name fit for a test.
+std::string test_name(std::string text);
+
+// Renders on the CPU and on `other`, prints the shares as a line of a table, and leaves images where `least` is not reached.
+Agreement expect_agreement(const std::string& scene, const std::string& other, const RenderSettings& settings, double tolerance, double least);
+
+}  // namespace lampyris::test
