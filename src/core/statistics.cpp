@@ -56,6 +56,8 @@ nlohmann::ordered_json statistics_json(const RunRecord& run, const Scene& scene)
     for (const auto& [name, seconds] : run.phases) phases[name] = seconds;
     Json kernels = Json::object();
     for (const auto& [name, seconds] : run.device_statistics.kernel_s) kernels[name] = seconds;
+    Json spirv_bytes = Json::object();
+    for (const auto& [name, bytes] : run.device_statistics.spirv_bytes) spirv_bytes[name] = bytes;
     Json result = {
         {"schema", "lampyris.stats/1"},
         {"version", version()},
@@ -76,6 +78,7 @@ nlohmann::ordered_json statistics_json(const RunRecord& run, const Scene& scene)
         {"total_s", run.total_s},
         {"phases", phases},
         {"kernels", kernels},
+        {"spirv_bytes", spirv_bytes},
         {"setup_s", {{"parse", run.parse_s}, {"scene", run.scene_s}, {"build", run.device_statistics.build_s}, {"compile", run.device_statistics.compile_s}}},
         {"rays", run.film.rays},
         {"samples", run.film.samples},

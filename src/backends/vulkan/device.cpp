@@ -21,7 +21,7 @@ class VulkanDevice final : public Device {
     explicit VulkanDevice(const DeviceOptions& options)
         : context_(std::make_shared<Context>(options)), account_(std::make_shared<MemoryAccount>()), cache_(cache_folder(options)) {
         for (const auto& [key, value] : options.settings) {
-            static const std::vector<std::string> known{"cache", "optimize", "precise", "ray_query", "staging", "validation", "workgroup"};
+            static const std::vector<std::string> known{"cache", "optimize", "precise", "ray_query", "specialise", "staging", "validation", "workgroup"};
             if (std::find(known.begin(), known.end(), key) == known.end()) {
                 throw InputError(fmt::format("error: backend vulkan has no setting \"{}\"{}; settings are {}", key, did_you_mean(key, known), list_of(known)));
             }
@@ -30,6 +30,7 @@ class VulkanDevice final : public Device {
         shader_options_.precise = read_switch(options, "precise", Switch::on) != Switch::off;
         shader_options_.optimize = read_switch(options, "optimize", Switch::on) != Switch::off;
         shader_options_.local_size = workgroup_size(options);
+        specialise_ = read_switch(options, "specialise", Switch::on) != Switch::off;
         const Switch staging = read_switch(options, "staging", Switch::automatic);
         staged_ = staging == Switch::on || (staging == Switch::automatic && !context_->can.has_host_visible_local);
         const Switch ray_query = read_switch(options, "ray_query", Switch::automatic);
@@ -73,7 +74,7 @@ class VulkanDevice final : public Device {
     KernelHandle compile(std::string_view file, uint32_t effects) override {
         const auto start = Clock::now();
         ShaderOptions options = shader_options_;
-        options.effects = effects;
+        options.effects = specialise_ ? effects : kernel::kAllEffects;
         const CompiledShader shader = compile_shader(file, options, cache_);
         std::shared_ptr<VulkanKernel> kernel;
         guarded(fmt::format("compiling kernel {}", file), [&] {
@@ -158,6 +159,7 @@ class VulkanDevice final : public Device {
     ShaderCache cache_;
     ShaderOptions shader_options_;
     bool staged_ = false;
+    bool specialise_ = true;
     std::unique_ptr<VulkanBuffer> unfinished_;
     SceneBindings no_scene_;
     DeviceStatistics statistics_;

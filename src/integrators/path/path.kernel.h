@@ -1,6 +1,8 @@
 // Path tracing with next-event estimation, multiple importance sampling (Veach 1997, chapters 9 and 10) and Russian
 // roulette. One invocation adds a range of samples to one pixel.
-#define KERNEL_CPU_VARIANTS kAllEffects, kTexturedEffects, kGlassEffects, kDiffuseEffects
+// clang-format off
+#define KERNEL_CPU_VARIANTS kAllEffects, kTexturedEffects, kGlassEffects, kDiffuseEffects, kGlassEffects | EFFECT_COAT, kDiffuseEffects | EFFECT_QUADRICS, kDiffuseEffects | EFFECT_QUADRICS | EFFECT_DIELECTRIC, kDiffuseEffects | EFFECT_TEXTURES | EFFECT_IMAGES
+// clang-format on
 #include "core/kernel/scene.h"
 
 #include "core/kernel/film.h"
