@@ -76,18 +76,15 @@ std::string Sources::excerpt(Location location) const {
     return line + suffix + "\n" + caret + "^";
 }
 
-// NOLINTBEGIN(performance-unnecessary-value-param): the texts are made for the call; none is copied.
 void Diagnostics::error(Location location, std::string message, std::string hint) {
-    if (++error_count_ <= kMaxShown) errors_.push_back(format("error", location, message, hint));
+    if (++error_count_ <= kMaxKept) errors_.push_back({location, std::move(message), std::move(hint)});
 }
 
 void Diagnostics::warning(Location location, std::string message, std::string hint) {
-    if (warnings_.size() < kMaxWarnings)
-        warnings_.push_back(format("warning", location, message, hint));
-    else if (warnings_.size() == kMaxWarnings)
-        warnings_.push_back("warning: further warnings are not shown");
+    if (++warning_count_ <= kMaxWarnings) warnings_.push_back({location, std::move(message), std::move(hint)});
 }
 
+// NOLINTBEGIN(performance-unnecessary-value-param): the texts are made for the call; none is copied.
 void Diagnostics::unsupported(Location location, std::string what, std::string hint) {
     if (!skip_unsupported_) {
         error(location, what + " is not supported", hint.empty() ? "--skip-unsupported renders the scene without it" : hint);
@@ -101,23 +98,43 @@ void Diagnostics::unsupported(Location location, std::string what, std::string h
 
 // NOLINTEND(performance-unnecessary-value-param)
 
+std::vector<std::string> Diagnostics::errors() const { return formatted(errors_, "error", kMaxShown); }
+
+std::vector<std::string> Diagnostics::warnings() const {
+    std::vector<std::string> texts = formatted(warnings_, "warning", kMaxWarnings);
+    if (warning_count_ > kMaxWarnings) texts.emplace_back("warning: further warnings are not shown");
+    return texts;
+}
+
 void Diagnostics::throw_if_errors() const {
     if (error_count_ == 0) return;
     std::string message;
-    for (const std::string& error : errors_) message += (message.empty() ? "" : "\n") + error;
-    if (error_count_ > errors_.size())
-        message += "\nerror: and " + std::to_string(error_count_ - errors_.size()) + " more";
+    const std::vector<std::string> texts = errors();
+    for (const std::string& text : texts) message += (message.empty() ? "" : "\n") + text;
+    if (error_count_ > texts.size()) message += "\nerror: and " + std::to_string(error_count_ - texts.size()) + " more";
     throw InputError(message);
 }
 
-std::string Diagnostics::format(const char* severity, Location location, const std::string& message,
-                                const std::string& hint) const {
-    std::string text = sources_->describe(location);
+std::vector<std::string> Diagnostics::formatted(const std::vector<Record>& records, const char* severity, size_t most) const {
+    std::vector<const Record*> order;
+    order.reserve(records.size());
+    for (const Record& record : records) order.push_back(&record);
+    // Stable: what is wrong with one place is told in the order in which it was found. Without a place: last.
+    std::ranges::stable_sort(order, [](const Record* a, const Record* b) {
+        return a->location.file != b->location.file ? a->location.file < b->location.file : a->location.offset < b->location.offset;
+    });
+    std::vector<std::string> texts;
+    for (size_t i = 0; i < std::min(order.size(), most); ++i) texts.push_back(format(severity, *order[i]));
+    return texts;
+}
+
+std::string Diagnostics::format(const char* severity, const Record& record) const {
+    std::string text = sources_->describe(record.location);
     if (!text.empty()) text += ": ";
     text += severity;
-    text += ": " + message;
-    if (!hint.empty()) text += hint.front() == ' ' ? hint : "; " + hint;
-    const std::string excerpt = sources_->excerpt(location);
+    text += ": " + record.message;
+    if (!record.hint.empty()) text += record.hint.front() == ' ' ? record.hint : "; " + record.hint;
+    const std::string excerpt = sources_->excerpt(record.location);
     if (!excerpt.empty()) text += "\n" + excerpt;
     return text;
 }

@@ -73,7 +73,8 @@ class Sources {
     std::deque<Source> sources_;
 };
 
-// Collects the errors and warnings of one scene, so that they are reported together.
+// Collects the errors and warnings of one scene, so that they are reported together, in the order in which a reader of the
+// scene meets their causes: by file (in the order of reading) and place in it, whoever found them first.
 class Diagnostics {
  public:
     explicit Diagnostics(const Sources& sources) : sources_(&sources) {}
@@ -90,19 +91,26 @@ class Diagnostics {
     bool has_errors() const { return error_count_ > 0; }
     // Throws InputError with every error so far (at most kMaxShown in full, then a count).
     void throw_if_errors() const;
-    const std::vector<std::string>& warnings() const { return warnings_; }          // formatted, with location
-    const std::vector<std::string>& unsupported_list() const { return skipped_; }   // "what (file:line)"
-    bool full() const { return error_count_ > kMaxShown; }  // nobody will read a further error's text
+    std::vector<std::string> warnings() const;  // formatted, with location; at most kMaxWarnings, and a line if there were more
+    const std::vector<std::string>& unsupported_list() const { return skipped_; }  // "what (file:line)"
+    bool full() const { return error_count_ > kMaxKept; }  // nobody will read a further error's text
     size_t error_count() const { return error_count_; }
-    const std::vector<std::string>& errors() const { return errors_; }  // formatted, the first kMaxShown
+    std::vector<std::string> errors() const;  // formatted, the first kMaxShown
     static constexpr size_t kMaxShown = 20;
+    static constexpr size_t kMaxKept = 100;  // errors found later are counted only, wherever they stand
     static constexpr size_t kMaxWarnings = 200;
 
  private:
-    std::string format(const char* severity, Location location, const std::string& message, const std::string& hint) const;
+    struct Record {
+        Location location;
+        std::string message, hint;
+    };
+    std::vector<std::string> formatted(const std::vector<Record>& records, const char* severity, size_t most) const;
+    std::string format(const char* severity, const Record& record) const;
     const Sources* sources_;
-    std::vector<std::string> errors_, warnings_, skipped_;
-    size_t error_count_ = 0;
+    std::vector<Record> errors_, warnings_;
+    std::vector<std::string> skipped_;
+    size_t error_count_ = 0, warning_count_ = 0;
     bool skip_unsupported_ = false;
 };
 

@@ -59,7 +59,7 @@ TEST_P(SceneErrors, AreToldWhereTheyAre) {
     for (const std::string& error : diagnostics.errors()) all += error + "\n";
     ASSERT_EQ(diagnostics.error_count(), expected.size()) << all;
     for (size_t i = 0; i < expected.size(); ++i) {
-        const std::string& error = diagnostics.errors()[i];
+        const std::string error = diagnostics.errors()[i];
         std::istringstream place(expected[i]);
         size_t line = 0, column = 0;
         char colon = 0;

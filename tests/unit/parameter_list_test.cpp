@@ -97,13 +97,13 @@ TEST(ParameterList, GettersGiveDefaultsAndReportWrongTypesAndCounts) {
     EXPECT_EQ(f.list.get_float("many", 5.0f, f.diagnostics), 5.0f);
     EXPECT_EQ(f.list.get_float("empty", 5.0f, f.diagnostics), 5.0f);
     EXPECT_EQ(f.list.get_choice("mode", "clamp", {"repeat", "clamp"}, f.diagnostics), "clamp");
-    const auto& errors = f.diagnostics.errors();
+    const std::vector<std::string> errors = f.diagnostics.errors();
     ASSERT_EQ(errors.size(), 4u);
     EXPECT_EQ(errors[0].find("p:2:1: error: parameter \"radius\" is of type float, not integer; write \"float radius\""), 0u);
     EXPECT_EQ(errors[1].find("p:2:35: error: parameter \"float many\" takes one value, but has 2"), 0u) << errors[1];
-    EXPECT_EQ(errors[2].find("p:2:79: error: parameter \"float empty\" takes one value, but has none"), 0u) << errors[2];
-    EXPECT_EQ(errors[3].find("p:2:55: error: \"repaet\" is not a value of \"string mode\" (did you mean \"repeat\"?); it is one of "
-                             "repeat, clamp"), 0u) << errors[3];
+    EXPECT_EQ(errors[2].find("p:2:55: error: \"repaet\" is not a value of \"string mode\" (did you mean \"repeat\"?); it is one of "
+                             "repeat, clamp"), 0u) << errors[2];
+    EXPECT_EQ(errors[3].find("p:2:79: error: parameter \"float empty\" takes one value, but has none"), 0u) << errors[3];
 }
 
 TEST(ParameterList, WhatNobodyAskedForIsAnError) {

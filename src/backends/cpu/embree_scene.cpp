@@ -6,7 +6,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <limits>
 
 namespace lampyris {
@@ -25,6 +27,9 @@ bool count_memory(void* total, ssize_t bytes, bool) {
     return true;
 }
 
+// Embree ends the process (an assertion, in the libraries of Debian) on a ray that is not finite or reaches this far.
+constexpr float kLargestRay = 1.8e18f;
+
 RTCRay make_ray(const float o[3], const float d[3], float t_max) {
     RTCRay ray;
     ray.org_x = o[0], ray.org_y = o[1], ray.org_z = o[2];
@@ -37,7 +42,7 @@ RTCRay make_ray(const float o[3], const float d[3], float t_max) {
 }  // namespace
 
 EmbreeScene::EmbreeScene(const Scene& scene, void* const* scene_buffers)
-    : scene_(scene), scene_buffers_(scene_buffers), device_(rtcNewDevice("start_threads=0")) {
+    : scene_(scene), scene_buffers_(scene_buffers), largest_ray_(kLargestRay), device_(rtcNewDevice("start_threads=0")) {
     if (!device_.get()) throw MachineError("error: Embree cannot start on this processor");
     rtcSetDeviceMemoryMonitorFunction(device_.get(), count_memory, &memory_);
 
@@ -59,12 +64,25 @@ EmbreeScene::EmbreeScene(const Scene& scene, void* const* scene_buffers)
         rtcSetGeometryTransform(instance.get(), 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, &scene.instances[i].transform.to0);
         rtcCommitGeometry(instance.get());
         rtcAttachGeometryByID(top_.get(), instance.get(), first_instance + i);
+        // Within the instance the ray is transformed, and must be in range there, too.
+        const kernel::TransformRecord& t = scene.instances[i].transform;
+        for (const kernel::vec4& row : {t.from0, t.from1, t.from2}) {
+            const float stretch = std::abs(row.x) + std::abs(row.y) + std::abs(row.z);
+            largest_ray_ = std::min(largest_ray_, (kLargestRay - std::min(std::abs(row.w), kLargestRay)) / std::max(stretch, 1.0f));
+        }
     }
     rtcCommitScene(top_.get());
     check(device_.get(), "building the acceleration structure");
 }
 
 CpuTracer EmbreeScene::tracer() { return {this, &EmbreeScene::closest, &EmbreeScene::occluded}; }
+
+// Such rays meet nothing, as in the other tracers; what they were made from is not finite, and is reported as a sample.
+bool EmbreeScene::traceable(const float o[3], const float d[3], float t_max) const {
+    const float m = largest_ray_;
+    return (std::abs(o[0]) <= m) & (std::abs(o[1]) <= m) & (std::abs(o[2]) <= m) & (std::abs(d[0]) <= m) & (std::abs(d[1]) <= m) &
+           (std::abs(d[2]) <= m) & (t_max >= 0.0f);
+}
 
 void EmbreeScene::attach_geometries(RTCScene target, uint32_t set) {
     const GeometrySet& range = scene_.sets[set];
@@ -100,6 +118,7 @@ EmbreeGeometry EmbreeScene::make_geometry(uint32_t index) {
 
 bool EmbreeScene::closest(void* self, const float origin[3], const float direction[3], float t_max, TraceHit& hit) {
     const EmbreeScene& scene = *static_cast<const EmbreeScene*>(self);
+    if (!scene.traceable(origin, direction, t_max)) return false;
     RTCRayHit ray;
     ray.ray = make_ray(origin, direction, t_max);
     ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -121,6 +140,7 @@ bool EmbreeScene::closest(void* self, const float origin[3], const float directi
 
 bool EmbreeScene::occluded(void* self, const float origin[3], const float direction[3], float t_max) {
     const EmbreeScene& scene = *static_cast<const EmbreeScene*>(self);
+    if (!scene.traceable(origin, direction, t_max)) return false;
     RTCRay ray = make_ray(origin, direction, t_max);
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);

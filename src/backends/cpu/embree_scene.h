@@ -52,6 +52,7 @@ class EmbreeScene {
         const EmbreeScene* owner;
         uint32_t geometry;
     };
+    bool traceable(const float origin[3], const float direction[3], float t_max) const;
     void attach_geometries(RTCScene target, uint32_t set);
     EmbreeGeometry make_geometry(uint32_t index);
     static bool closest(void* self, const float origin[3], const float direction[3], float t_max, TraceHit& hit);
@@ -62,6 +63,7 @@ class EmbreeScene {
 
     const Scene& scene_;
     void* const* scene_buffers_;
+    float largest_ray_;  // coordinates of origins and directions beyond it are not for Embree
     size_t memory_ = 0;
     EmbreeDevice device_;
     std::vector<std::unique_ptr<UserGeometry>> user_geometries_;

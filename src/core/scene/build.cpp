@@ -60,7 +60,7 @@ BuiltScene build_scene(SceneDescription&& description, const BuildOptions& optio
     Scene& scene = built.scene;
     struct Parts {
         Parts(SceneDescription& d, const BuildOptions& o, Scene& s, SceneSettings& t, Diagnostics& g)
-            : context{d, o, s, t, g, textures, {}, {}, {}, {}}, textures(context) {}
+            : context{d, o, s, t, g, textures, {}, {}, {}, {}, {}}, textures(context) {}
         BuildContext context;
         TextureBuilder textures;
     } parts(description, options, scene, built.settings, diagnostics);
@@ -68,7 +68,6 @@ BuiltScene build_scene(SceneDescription&& description, const BuildOptions& optio
 
     build_view(context);
     build_shapes(context);
-    scene.record.bounds = bounding_sphere(scene);
     build_lights(context);
     context.textures.define_all();  // mistakes in textures that nothing uses are told, too
     context.check_unused_materials();

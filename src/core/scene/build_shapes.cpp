@@ -33,6 +33,54 @@ uint32_t ShapeContext::add_geometry(uint32_t kind, uint32_t flags, uint32_t prim
 
 namespace {
 
+struct Box {
+    glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+    void add(glm::dvec3 p) { low = glm::min(low, p), high = glm::max(high, p); }
+    bool empty() const { return low.x > high.x; }
+    bool too_far() const {
+        const glm::dvec3 most = glm::max(glm::abs(low), glm::abs(high));
+        return !(std::max({most.x, most.y, most.z}) <= double(kLargestCoordinate));
+    }
+    // The corners of this box, transformed, into another.
+    void add_to(Box& box, const kernel::TransformRecord& t) const {
+        for (int corner = 0; corner < 8; ++corner) {
+            const glm::dvec4 p(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z, 1.0);
+            box.add({glm::dot(glm::dvec4(t.to0), p), glm::dot(glm::dvec4(t.to1), p), glm::dot(glm::dvec4(t.to2), p)});
+        }
+    }
+};
+
+Box set_bounds(const Scene& scene, const GeometrySet& set) {
+    Box box;
+    for (uint32_t i = set.first_geometry; i < set.first_geometry + set.geometry_count; ++i) {
+        const kernel::GeometryRecord& g = scene.geometries[i];
+        if (g.data.x <= kernel::GEOMETRY_BILINEAR) {
+            const uint32_t corners = g.data.x == kernel::GEOMETRY_TRIANGLES ? 3 : 4;
+            for (uint32_t k = 0; k < g.attributes.z * corners; ++k) {
+                const size_t v = size_t(g.data.w) + scene.indices[g.data.z + k];
+                box.add({scene.positions[3 * v], scene.positions[3 * v + 1], scene.positions[3 * v + 2]});
+            }
+        } else {
+            Box own;
+            const bool disk = g.data.x == kernel::GEOMETRY_DISK;
+            const double radius = disk ? g.params.y : g.params.x;
+            own.add({-radius, -radius, disk ? g.params.x : g.params.y});
+            own.add({radius, radius, disk ? g.params.x : g.params.z});
+            own.add_to(box, scene.transforms[g.ids.w]);
+        }
+    }
+    return box;
+}
+
+void refuse_distance(Diagnostics& diagnostics, Location where, const char* what) {
+    diagnostics.error(where, fmt::format("the {} reaches farther out than rays are traced", what),
+                      fmt::format("coordinates in the world are at most {:g}", kLargestCoordinate));
+}
+
+}  // namespace
+
+namespace {
+
 class ShapeBuilder {
  public:
     explicit ShapeBuilder(BuildContext& context) : context_(context), area_lights_(context.description.area_lights.size()) {}
@@ -57,8 +105,7 @@ class ShapeBuilder {
         }
         if (shape.world_from_object.animated()) context_.refuse_motion(shape.world_from_object, shape.location);
         const glm::mat4& matrix = shape.world_from_object.matrix[0];
-        const double determinant = glm::determinant(glm::dmat3(glm::mat3(matrix)));
-        if (!std::isfinite(determinant) || determinant == 0.0) {
+        if (!invertible(matrix)) {
             context_.diagnostics.error(shape.location, "the transform in force here cannot be inverted", "a scale by 0, or numbers out of range?");
             return;
         }
@@ -67,7 +114,10 @@ class ShapeBuilder {
         ParameterReader reader(shape_registry().find_info(shape.type)->parameters, shape, context_.diagnostics);
         ShapeContext context{context_, shape, reader, context_.material(shape.material), area_light(shape, in_object), in_object,
                              context_.place(shape, "Shape")};
+        const GeometrySet before{uint32_t(context_.scene.geometries.size()), 0};
         (*factory)(context);
+        const Box box = set_bounds(context_.scene, {before.first_geometry, uint32_t(context_.scene.geometries.size()) - before.first_geometry});
+        if (!box.empty() && box.too_far()) refuse_distance(context_.diagnostics, shape.location, "shape");
         reader.finish(fmt::format("shape \"{}\"", shape.type));
     }
 
@@ -117,19 +167,21 @@ void build_shapes(BuildContext& context) {
     scene.instance_sets.push_back(0);
 
     std::map<uint32_t, uint32_t> set_of_object;
+    std::vector<Box> object_boxes(description.objects.size());
+    std::vector<Location> places{Location{}};  // of Scene::instances
     for (const InstanceDescription& instance : description.instances) {
         if (instance.object >= description.objects.size()) continue;
         ObjectDescription& object = description.objects[instance.object];
         if (!set_of_object.contains(instance.object)) {
             set_of_object.emplace(instance.object, uint32_t(scene.sets.size()));
             scene.sets.push_back(builder.build(object.shapes, true));
+            object_boxes[instance.object] = set_bounds(scene, scene.sets.back());
         }
         const uint32_t index = set_of_object[instance.object];
         const GeometrySet& set = scene.sets[index];
         if (instance.world_from_object.animated()) context.refuse_motion(instance.world_from_object, instance.location);
         const glm::mat4& matrix = instance.world_from_object.matrix[0];
-        const double determinant = glm::determinant(glm::dmat3(glm::mat3(matrix)));
-        if (!std::isfinite(determinant) || determinant == 0.0) {
+        if (!invertible(matrix)) {
             context.diagnostics.error(instance.location, "the transform in force here cannot be inverted", "a scale by 0, or numbers out of range?");
             continue;
         }
@@ -137,53 +189,31 @@ void build_shapes(BuildContext& context) {
         kernel::InstanceRecord record{};
         record.transform = transform_record(matrix);
         record.data = {set.first_geometry, set.geometry_count, kernel::NONE, swaps_handedness(matrix) ? 1u : 0u};
+        Box box;
+        object_boxes[instance.object].add_to(box, record.transform);
+        if (box.too_far()) refuse_distance(context.diagnostics, instance.location, "instance");
         scene.instances.push_back(record);
         scene.instance_sets.push_back(index);
+        places.push_back(instance.location);
         context.ask(kernel::EFFECT_INSTANCES, fmt::format("{} (ObjectInstance \"{}\")", description.sources->describe(instance.location), object.name));
+    }
+    scene.record.bounds = bounding_sphere(scene);
+    // Rays from anywhere in the scene, and from the camera, must be in range within each instance.
+    const kernel::CameraRecord& camera = scene.record.camera;
+    const glm::vec3 centre(scene.record.bounds), eye(camera.to0.w, camera.to1.w, camera.to2.w);
+    const float reach = std::max(glm::length(centre) + scene.record.bounds.w, glm::length(eye));
+    for (size_t i = 1; i < scene.instances.size(); ++i) {
+        const kernel::TransformRecord& t = scene.instances[i].transform;
+        for (const kernel::vec4& row : {t.from0, t.from1, t.from2}) {
+            if (glm::length(glm::vec3(row)) * std::max(reach, 1.0f) + std::abs(row.w) <= 0.5f * kLargestCoordinate) continue;
+            context.diagnostics.error(places[i], "the instance is too small beside the scene for rays to be traced", "a larger scale");
+            break;
+        }
     }
     for (uint32_t i = 0; i < description.objects.size(); ++i)
         if (!set_of_object.contains(i))
             scene.notes.push_back(fmt::format("object \"{}\" is never instanced", description.objects[i].name));
 }
-
-namespace {
-
-struct Box {
-    glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
-    void add(glm::dvec3 p) { low = glm::min(low, p), high = glm::max(high, p); }
-    bool empty() const { return low.x > high.x; }
-    // The corners of this box, transformed, into another.
-    void add_to(Box& box, const kernel::TransformRecord& t) const {
-        for (int corner = 0; corner < 8; ++corner) {
-            const glm::dvec4 p(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z, 1.0);
-            box.add({glm::dot(glm::dvec4(t.to0), p), glm::dot(glm::dvec4(t.to1), p), glm::dot(glm::dvec4(t.to2), p)});
-        }
-    }
-};
-
-Box set_bounds(const Scene& scene, const GeometrySet& set) {
-    Box box;
-    for (uint32_t i = set.first_geometry; i < set.first_geometry + set.geometry_count; ++i) {
-        const kernel::GeometryRecord& g = scene.geometries[i];
-        if (g.data.x <= kernel::GEOMETRY_BILINEAR) {
-            const uint32_t corners = g.data.x == kernel::GEOMETRY_TRIANGLES ? 3 : 4;
-            for (uint32_t k = 0; k < g.attributes.z * corners; ++k) {
-                const size_t v = size_t(g.data.w) + scene.indices[g.data.z + k];
-                box.add({scene.positions[3 * v], scene.positions[3 * v + 1], scene.positions[3 * v + 2]});
-            }
-        } else {
-            Box own;
-            const bool disk = g.data.x == kernel::GEOMETRY_DISK;
-            const double radius = disk ? g.params.y : g.params.x;
-            own.add({-radius, -radius, disk ? g.params.x : g.params.y});
-            own.add({radius, radius, disk ? g.params.x : g.params.z});
-            own.add_to(box, scene.transforms[g.ids.w]);
-        }
-    }
-    return box;
-}
-
-}  // namespace
 
 kernel::vec4 bounding_sphere(const Scene& scene) {
     Box world;

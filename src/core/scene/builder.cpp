@@ -24,11 +24,20 @@ kernel::TransformRecord transform_record(const glm::mat4& to) {
     return {row(to, 0), row(to, 1), row(to, 2), row(from, 0), row(from, 1), row(from, 2)};
 }
 
+bool invertible(const glm::mat4& to) {
+    const double determinant = glm::determinant(glm::dmat3(glm::mat3(to)));
+    if (!std::isfinite(determinant) || determinant == 0.0) return false;
+    const glm::mat4 from(glm::inverse(glm::dmat4(to)));
+    for (int i = 0; i < 4; ++i)
+        for (int k = 0; k < 4; ++k)
+            if (!std::isfinite(to[i][k]) || !std::isfinite(from[i][k])) return false;
+    return true;
+}
+
 bool swaps_handedness(const glm::mat4& m) { return glm::determinant(glm::dmat3(glm::mat3(m))) < 0.0; }
 
 uint32_t BuildContext::add_transform(const glm::mat4& to, Location where) {
-    const double determinant = glm::determinant(glm::dmat3(glm::mat3(to)));
-    if (!std::isfinite(determinant) || determinant == 0.0) {
+    if (!invertible(to)) {
         diagnostics.error(where, "the transform in force here cannot be inverted", "a scale by 0, or numbers out of range?");
         scene.transforms.push_back(transform_record(glm::mat4(1.0f)));
     } else {

@@ -53,6 +53,7 @@ struct BuildContext {
     // `path` holds the materials that are being built, outermost first: a mix must not contain itself.
     uint32_t material(uint32_t description_index, const std::vector<uint32_t>& path = {});
     std::map<uint32_t, uint32_t> built_materials;
+    std::map<uint32_t, uint32_t> mix_depths;  // of mixes in Scene::materials: how deeply they nest
     // Materials that nothing uses are not built; unknown types and parameters are told all the same.
     void check_unused_materials();
 
@@ -71,6 +72,10 @@ struct BuildContext {
 };
 
 kernel::TransformRecord transform_record(const glm::mat4& to);
+// Whether a transform can be inverted, and the inverse be held in floats.
+bool invertible(const glm::mat4& to);
+// Farther out than this, squares of distances overflow, and tracers leave out what lies there (Embree: 1.8e18).
+constexpr float kLargestCoordinate = 1e18f;
 bool swaps_handedness(const glm::mat4& m);
 
 // ---- Values that a texture may stand in for --------------------------------------------------------------------------

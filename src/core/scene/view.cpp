@@ -80,6 +80,8 @@ void build_view(BuildContext& context) {
     context.refuse_medium(camera.medium);
     const std::string asked_by = context.place(camera, "Camera");
     if (camera.world_from_camera.animated()) context.refuse_motion(camera.world_from_camera, camera.location);
+    if (!invertible(camera.world_from_camera.matrix[0]))
+        context.diagnostics.error(camera.location, "the camera's transform cannot be inverted", "a scale by 0, or numbers out of range?");
     const kernel::TransformRecord world = transform_record(camera.world_from_camera.matrix[0]);
     record.to0 = world.to0, record.to1 = world.to1, record.to2 = world.to2;
     build_entity(context, camera_registry(), camera, "perspective", [&](CameraFactory factory, ParameterReader& reader) {

@@ -9,6 +9,19 @@ namespace lampyris {
 
 namespace {
 
+// Less than MIX_DEPTH (core/kernel/material.h), which is how many kernels look at.
+constexpr uint32_t kMostMixes = 63;
+
+// How many mixes a look-up passes from a material on.
+uint32_t mix_depth(const BuildContext& build, uint32_t material) {
+    const auto found = build.mix_depths.find(material);
+    return found == build.mix_depths.end() ? 0u : found->second;
+}
+
+void refuse_depth(MaterialContext& context) {
+    context.reader.error("materials", "mixes of mixes nest too deeply", fmt::format("at most {} within each other", kMostMixes));
+}
+
 void build(MaterialContext& context) {
     kernel::MaterialRecord& record = context.record;
     BuildContext& build = context.build;
@@ -18,6 +31,7 @@ void build(MaterialContext& context) {
     record.floats.x = amount.value;
     record.extra.z = amount.texture;
     record.extra.x = record.extra.y = 0;
+    uint32_t depth = 1;
     const Parameter* parameter = context.reader.find("materials");
     if (!parameter) return;  // told as a missing parameter
     const auto* names = std::get_if<std::vector<std::string>>(&parameter->values);
@@ -42,8 +56,20 @@ void build(MaterialContext& context) {
             context.reader.error("materials", fmt::format("the mix contains itself, through \"{}\"", name));
             continue;
         }
+        // Kernels follow a mix that deep; this also bounds the recursion here.
+        if (context.path.size() > kMostMixes) {
+            refuse_depth(context);
+            return;
+        }
         record.extra[i] = build.material(index, context.path);
+        depth = std::max(depth, 1 + mix_depth(build, record.extra[i]));
     }
+    if (depth > kMostMixes) {
+        refuse_depth(context);
+        depth = 0;
+    }
+    // Materials are appended when they are finished, so this one's index is the next.
+    build.mix_depths[uint32_t(build.scene.materials.size())] = depth;
 }
 
 ParameterSpecs specs() {
