@@ -72,7 +72,8 @@ size_t bytes_of(const SceneDescription& scene) {
     for (const ShapeDescription& shape : scene.shapes)
         for (const Parameter& parameter : shape.parameters.parameters) {
             if (const auto* f = std::get_if<std::vector<float>>(&parameter.values)) bytes += f->size() * sizeof(float);
-            if (const auto* i = std::get_if<std::vector<int32_t>>(&parameter.values)) bytes += i->size() * sizeof(int32_t);
+            if (const auto* i = std::get_if<std::vector<int32_t>>(&parameter.values))
+                bytes += i->size() * sizeof(int32_t);
         }
     return bytes;
 }
@@ -113,8 +114,8 @@ void parse_text(benchmark::State& state) {
     write_mesh_scene(file.path(), static_cast<size_t>(state.range(0)) * kMegabyte, static_cast<int>(state.range(1)));
     size_t mesh_bytes = 0;
     for (auto _ : state) mesh_bytes = bytes_of(parse(file.path()));
-    state.counters["MB/s"] = benchmark::Counter(static_cast<double>(file.size()) / kMegabyte,
-                                                benchmark::Counter::kIsIterationInvariantRate);
+    state.counters["MB/s"] =
+        benchmark::Counter(static_cast<double>(file.size()) / kMegabyte, benchmark::Counter::kIsIterationInvariantRate);
     state.counters["peak/mesh"] = peak_bytes([&] { parse(file.path()); }) / static_cast<double>(mesh_bytes);
 }
 // Large meshes, and many small ones.

@@ -55,7 +55,8 @@ double timed(tbb::task_arena& arena, size_t count, size_t block, const Work& wor
     const auto start = Clock::now();
     arena.execute([&] {
         tbb::parallel_for(
-            tbb::blocked_range<size_t>(0, count, block), [&](const tbb::blocked_range<size_t>& range) { work(range.begin(), range.end()); },
+            tbb::blocked_range<size_t>(0, count, block),
+            [&](const tbb::blocked_range<size_t>& range) { work(range.begin(), range.end()); },
             tbb::simple_partitioner{});
     });
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -104,7 +105,8 @@ int run(const std::string& file, int width, int height, uint32_t samples, int th
     const IntegratorFactory& factory = integrators().require("path");
     set_defaults(&params, factory.fields);
     read_parameters(&params, factory.fields, built.settings.integrator.parameters, diagnostics);
-    const CpuKernelFunction kernel = find_cpu_kernel("integrators/path/path.kernel.h", CpuTracerKind::embree, scene.effects.mask());
+    const CpuKernelFunction kernel =
+        find_cpu_kernel("integrators/path/path.kernel.h", CpuTracerKind::embree, scene.effects.mask());
 
     const uint32_t pixels = uint32_t(width) * uint32_t(height);
     std::vector<kernel::FilmPixel> film(pixels);
@@ -143,13 +145,18 @@ int run(const std::string& file, int width, int height, uint32_t samples, int th
         shares.push_back(b / p);
     }
     const double rays = double(recorder.rays.size());
-    const size_t closest = size_t(std::count_if(recorder.rays.begin(), recorder.rays.end(), [](const RecordedRay& r) { return r.closest; }));
+    const size_t closest = size_t(
+        std::count_if(recorder.rays.begin(), recorder.rays.end(), [](const RecordedRay& r) { return r.closest; }));
     size_t triangles = 0;
     for (const kernel::GeometryRecord& geometry : scene.geometries) triangles += geometry.attributes.z;
-    const nlohmann::ordered_json json = {{"scene", file},          {"primitives", triangles},
-                                         {"threads", threads},     {"rays", recorder.rays.size()},
-                                         {"closest_hit_rays", closest}, {"path_mrays_per_s", rays / median(path_s) * 1e-6},
-                                         {"embree_mrays_per_s", rays / median(bare_s) * 1e-6}, {"share", median(shares)},
+    const nlohmann::ordered_json json = {{"scene", file},
+                                         {"primitives", triangles},
+                                         {"threads", threads},
+                                         {"rays", recorder.rays.size()},
+                                         {"closest_hit_rays", closest},
+                                         {"path_mrays_per_s", rays / median(path_s) * 1e-6},
+                                         {"embree_mrays_per_s", rays / median(bare_s) * 1e-6},
+                                         {"share", median(shares)},
                                          {"share_min", *std::min_element(shares.begin(), shares.end())},
                                          {"share_max", *std::max_element(shares.begin(), shares.end())},
                                          {"samples_per_s", double(pixels) * samples / median(path_s)}};
@@ -167,7 +174,8 @@ int main(int argc, char** argv) {
         return 1;
     }
     try {
-        return lampyris::run(argv[1], width, height, uint32_t(std::atoi(argv[3])), std::atoi(argv[4]), std::atoi(argv[5]));
+        return lampyris::run(argv[1], width, height, uint32_t(std::atoi(argv[3])), std::atoi(argv[4]),
+                             std::atoi(argv[5]));
     } catch (const lampyris::Error& error) {
         std::fprintf(stderr, "%s\n", error.what());
         return int(error.code());

@@ -27,7 +27,9 @@ struct Counts {
 };
 
 template <typename T>
-size_t bytes_of(const std::vector<T>& values) { return values.size() * sizeof(T); }
+size_t bytes_of(const std::vector<T>& values) {
+    return values.size() * sizeof(T);
+}
 
 Counts count(const Scene& scene) {
     Counts counts;
@@ -45,9 +47,10 @@ Counts count(const Scene& scene) {
         counts.triangles += triangles;
     }
     for (const uint32_t set : scene.instance_sets) counts.triangles_with_instances += triangles_of_set[set];
-    counts.memory = bytes_of(scene.geometries) + bytes_of(scene.indices) + bytes_of(scene.positions) + bytes_of(scene.normals) +
-                    bytes_of(scene.uvs) + bytes_of(scene.transforms) + bytes_of(scene.instances) + bytes_of(scene.materials) +
-                    bytes_of(scene.texture_ops) + bytes_of(scene.images) + bytes_of(scene.texels) + bytes_of(scene.lights) +
+    counts.memory = bytes_of(scene.geometries) + bytes_of(scene.indices) + bytes_of(scene.positions) +
+                    bytes_of(scene.normals) + bytes_of(scene.uvs) + bytes_of(scene.transforms) +
+                    bytes_of(scene.instances) + bytes_of(scene.materials) + bytes_of(scene.texture_ops) +
+                    bytes_of(scene.images) + bytes_of(scene.texels) + bytes_of(scene.lights) +
                     bytes_of(scene.distributions);
     return counts;
 }
@@ -68,21 +71,26 @@ void print_table(const LoadedScene& loaded) {
         fmt::print(", of which {},{} to {},{}", crop[0], crop[1], crop[2], crop[3]);
     fmt::print(", {} samples a pixel ({})\n", loaded.settings.samples_per_pixel, loaded.settings.sampler);
     fmt::print("integrator   {}\n", loaded.settings.integrator.type);
-    fmt::print("shapes       {} triangles, {} patches, {} quadrics in {} geometries; {} instances", counts.triangles, counts.patches,
-               counts.quadrics, scene.geometries.size(), scene.instances.size() - 1);
+    fmt::print("shapes       {} triangles, {} patches, {} quadrics in {} geometries; {} instances", counts.triangles,
+               counts.patches, counts.quadrics, scene.geometries.size(), scene.instances.size() - 1);
     if (scene.instances.size() > 1) fmt::print(" ({} triangles in all)", counts.triangles_with_instances);
     fmt::print("\nlights       {}, of which {} infinite\n", scene.lights.size(), scene.record.lights.y);
-    fmt::print("materials    {}; {} texture operations, {} images\n", scene.materials.size(), scene.texture_ops.size(), scene.images.size());
+    fmt::print("materials    {}; {} texture operations, {} images\n", scene.materials.size(), scene.texture_ops.size(),
+               scene.images.size());
     fmt::print("memory       {:.1f} MB before acceleration structures\n\n", double(counts.memory) * 1e-6);
 
     size_t name_width = 6, asked_width = 8;
-    for (const EffectInfo& info : known_effects()) name_width = std::max(name_width, std::string_view(info.name).size());
-    for (const EffectRequest& request : scene.effects.requests()) asked_width = std::max(asked_width, request.asked_by.size());
+    for (const EffectInfo& info : known_effects())
+        name_width = std::max(name_width, std::string_view(info.name).size());
+    for (const EffectRequest& request : scene.effects.requests())
+        asked_width = std::max(asked_width, request.asked_by.size());
     fmt::print("{:<{}}  {:<9}  {:<{}}  {}\n", "effect", name_width, "simulated", "asked by", asked_width, "cost");
     for (const EffectInfo& info : known_effects())
         if (const EffectRequest* request = request_of(scene.effects, info.effect))
-            fmt::print("{:<{}}  {:<9}  {:<{}}  {}\n", info.name, name_width, "yes", request->asked_by, asked_width, info.cost);
-    for (const std::string& what : scene.unsupported) fmt::print("{:<{}}  {:<9}  {}\n", "(unsupported)", name_width, "no", what);
+            fmt::print("{:<{}}  {:<9}  {:<{}}  {}\n", info.name, name_width, "yes", request->asked_by, asked_width,
+                       info.cost);
+    for (const std::string& what : scene.unsupported)
+        fmt::print("{:<{}}  {:<9}  {}\n", "(unsupported)", name_width, "no", what);
     std::string rest;
     for (const EffectInfo& info : known_effects())
         if (!request_of(scene.effects, info.effect)) rest += fmt::format("{}{}", rest.empty() ? "" : ", ", info.name);
@@ -144,10 +152,12 @@ int describe(const DescribeOptions& options) {
 
 void add_describe(CLI::App& parent, std::function<int()>& run) {
     auto options = std::make_shared<DescribeOptions>();
-    CLI::App* command = parent.add_subcommand("describe", "Tell what a scene calls for, who asks for it, and what it costs");
+    CLI::App* command =
+        parent.add_subcommand("describe", "Tell what a scene calls for, who asks for it, and what it costs");
     command->add_option("SCENE", options->scene, "a pbrt-v4 scene file")->required();
     command->add_flag("--json", options->json, "print JSON (docs/describe.md)");
-    command->add_flag("--skip-unsupported", options->skip_unsupported, "leave out what is not supported, instead of failing");
+    command->add_flag("--skip-unsupported", options->skip_unsupported,
+                      "leave out what is not supported, instead of failing");
     command->callback([&run, options] { run = [options] { return describe(*options); }; });
 }
 

@@ -13,8 +13,12 @@ using Json = nlohmann::ordered_json;
 Json to_json(const std::vector<DeviceInfo>& devices) {
     Json list = Json::array();
     for (const DeviceInfo& device : devices) {
-        list.push_back({{"backend", device.backend}, {"index", device.index}, {"name", device.name}, {"driver", device.driver},
-                        {"memory_bytes", device.memory_bytes}, {"features", device.features}});
+        list.push_back({{"backend", device.backend},
+                        {"index", device.index},
+                        {"name", device.name},
+                        {"driver", device.driver},
+                        {"memory_bytes", device.memory_bytes},
+                        {"features", device.features}});
     }
     return {{"schema", "lampyris.devices/1"}, {"devices", list}};
 }
@@ -32,7 +36,8 @@ std::string to_text(const std::vector<DeviceInfo>& devices) {
 
 void add_devices(CLI::App& parent, std::function<int()>& run) {
     auto json = std::make_shared<bool>(false);
-    CLI::App* command = parent.add_subcommand("devices", "Lists what each backend can run on (--backend NAME --device NUMBER)");
+    CLI::App* command =
+        parent.add_subcommand("devices", "Lists what each backend can run on (--backend NAME --device NUMBER)");
     command->add_flag("--json", *json, "machine-readable, schema lampyris.devices/1 (docs/backends.md)");
     command->callback([&run, json] {
         run = [json] {

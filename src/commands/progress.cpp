@@ -17,20 +17,24 @@ std::string duration_text(double seconds) {
     return fmt::format("{} h {} min", whole / 3600, whole % 3600 / 60);
 }
 
-ProgressDisplay::ProgressDisplay(bool quiet, BudgetLimits limits) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0), limits_(limits) {}
+ProgressDisplay::ProgressDisplay(bool quiet, BudgetLimits limits)
+    : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0), limits_(limits) {}
 
 std::string ProgressDisplay::error_text(const RenderProgress& progress) {
     if (!std::isfinite(progress.estimated_error)) return "error not known yet";
     if (progress.estimated_error == 0.0) return "no variance seen";
     // The variance of a mean falls as 1/N: half the relMSE takes as much work again as was spent so far.
-    return fmt::format("relMSE about {:.2e} (estimated), halving it costs another {}", progress.estimated_error, duration_text(progress.wall_s));
+    return fmt::format("relMSE about {:.2e} (estimated), halving it costs another {}", progress.estimated_error,
+                       duration_text(progress.wall_s));
 }
 
 double ProgressDisplay::share_done(const RenderProgress& progress) const {
     double share = 0.0;
-    if (limits_.passes) share = std::max(share, double(progress.passes) / double(std::max<uint64_t>(1, *limits_.passes)));
+    if (limits_.passes)
+        share = std::max(share, double(progress.passes) / double(std::max<uint64_t>(1, *limits_.passes)));
     if (limits_.seconds) share = std::max(share, progress.wall_s / *limits_.seconds);
-    if (limits_.target_error && progress.estimated_error > 0.0) share = std::max(share, *limits_.target_error / progress.estimated_error);
+    if (limits_.target_error && progress.estimated_error > 0.0)
+        share = std::max(share, *limits_.target_error / progress.estimated_error);
     return progress.finished ? 1.0 : std::clamp(share, 0.0, 1.0);
 }
 
@@ -39,12 +43,13 @@ void ProgressDisplay::show(const RenderProgress& progress) {
     const double share = share_done(progress);
     const double rate = progress.wall_s > 0.0 ? double(progress.samples) / progress.wall_s : 0.0;
     const double left = share > 0.0 ? progress.wall_s * (1.0 - share) / share : 0.0;
-    const std::string line = fmt::format("{:3.0f} %  {} passes  {:.2f} Msamples/s  {} left  {}", share * 100.0, progress.passes,
-                                         rate * 1e-6, duration_text(left), error_text(progress));
+    const std::string line = fmt::format("{:3.0f} %  {} passes  {:.2f} Msamples/s  {} left  {}", share * 100.0,
+                                         progress.passes, rate * 1e-6, duration_text(left), error_text(progress));
     if (terminal_) {
         constexpr int kWidth = 20;
         const int filled = int(share * kWidth + 0.5);
-        fmt::print(stderr, "\r\033[K[{:#<{}}{:-<{}}] {}{}", "", filled, "", kWidth - filled, line, progress.finished ? "\n" : "");
+        fmt::print(stderr, "\r\033[K[{:#<{}}{:-<{}}] {}{}", "", filled, "", kWidth - filled, line,
+                   progress.finished ? "\n" : "");
         std::fflush(stderr);
         return;
     }

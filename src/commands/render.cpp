@@ -39,7 +39,8 @@ ChosenIntegrator choose_integrator(const RenderOptions& options, SceneSettings& 
     const bool from_scene = choice.name.empty();
     if (from_scene && !integrators().find(chosen.name)) {
         const auto [message, hint] = integrators().unknown(chosen.name);
-        diagnostics.error(settings.integrator.type_location, message, hint + "; --integrator NAME renders the scene with another one");
+        diagnostics.error(settings.integrator.type_location, message,
+                          hint + "; --integrator NAME renders the scene with another one");
         return chosen;
     }
     const IntegratorFactory& factory = integrators().require(chosen.name);
@@ -60,28 +61,33 @@ ChosenIntegrator choose_integrator(const RenderOptions& options, SceneSettings& 
     }
     const std::string of_what = fmt::format("integrator \"{}\"", chosen.name);
     for (const auto& [key, value] : choice.settings) set_parameter(parameters, factory.fields, key, value, of_what);
-    for (const auto& [key, value] : options.settings_of("integrator")) set_parameter(parameters, factory.fields, key, value, of_what);
+    for (const auto& [key, value] : options.settings_of("integrator"))
+        set_parameter(parameters, factory.fields, key, value, of_what);
     return chosen;
 }
 
 std::vector<std::string> choose_outputs(const RenderOptions& options, const SceneSettings& settings) {
     std::vector<std::string> outputs = options.outputs;
     if (outputs.empty() && !options.replay) {
-        if (settings.output.empty()) throw InputError("error: no output: name an image with -o IMAGE.exr (or .pfm, .png)");
+        if (settings.output.empty())
+            throw InputError("error: no output: name an image with -o IMAGE.exr (or .pfm, .png)");
         outputs.push_back(settings.output);
     }
     return outputs;
 }
 
 void print_summary(const RunRecord& run, const std::vector<std::string>& outputs) {
-    fmt::print("{}: {}, {} passes, {} ({} in all), {:.2f} Mrays/s on {}\n", run.scene, run.integrator, run.progress.passes,
-               duration_text(run.progress.wall_s), duration_text(run.total_s),
+    fmt::print("{}: {}, {} passes, {} ({} in all), {:.2f} Mrays/s on {}\n", run.scene, run.integrator,
+               run.progress.passes, duration_text(run.progress.wall_s), duration_text(run.total_s),
                run.progress.wall_s > 0.0 ? double(run.film.rays) / run.progress.wall_s * 1e-6 : 0.0, run.backend);
     fmt::print("{}\n", ProgressDisplay::error_text(run.progress));
     if (run.film.non_finite > 0)
-        fmt::print(stderr, "warning: {} samples were not finite and are left out; the first one is sample {} of pixel ({}, {}): look at it with --replay {},{},{}\n",
-                   run.film.non_finite, run.film.first_non_finite[2], run.film.first_non_finite[0], run.film.first_non_finite[1],
-                   run.film.first_non_finite[0], run.film.first_non_finite[1], run.film.first_non_finite[2]);
+        fmt::print(stderr,
+                   "warning: {} samples were not finite and are left out; the first one is sample {} of pixel ({}, "
+                   "{}): look at it with --replay {},{},{}\n",
+                   run.film.non_finite, run.film.first_non_finite[2], run.film.first_non_finite[0],
+                   run.film.first_non_finite[1], run.film.first_non_finite[0], run.film.first_non_finite[1],
+                   run.film.first_non_finite[2]);
     for (const std::string& output : outputs) fmt::print("wrote {}\n", output);
 }
 
@@ -124,7 +130,8 @@ int render(const RenderOptions& options) {
     if (options.replay) {
         const auto [x, y, pass] = *options.replay;
         if (x < 0 || y < 0 || x >= int(built.scene.width()) || y >= int(built.scene.height()))
-            throw InputError(fmt::format("error: --replay {},{},{}: the picture has {}x{} pixels", x, y, pass, built.scene.width(), built.scene.height()));
+            throw InputError(fmt::format("error: --replay {},{},{}: the picture has {}x{} pixels", x, y, pass,
+                                         built.scene.width(), built.scene.height()));
         built.settings.crop = {x, y, x + 1, y + 1};
     }
     const std::vector<std::string> outputs = choose_outputs(options, built.settings);
@@ -138,7 +145,8 @@ int render(const RenderOptions& options) {
         if (image.width == int(built.scene.width()) && image.height == int(built.scene.height()))
             image = image.crop({crop[0], crop[1], crop[2], crop[3]});
         if (image.width != width || image.height != height)
-            throw InputError(fmt::format("error: {}: the reference has {} pixels, the picture {}x{}", options.reference, image.size_text(), width, height));
+            throw InputError(fmt::format("error: {}: the reference has {} pixels, the picture {}x{}", options.reference,
+                                         image.size_text(), width, height));
         reference = std::move(image.pixels);
     }
 
@@ -146,7 +154,8 @@ int render(const RenderOptions& options) {
     const DeviceSceneHandle device_scene = device->upload(built.scene);
     Film film(*device, built.scene, crop);
     BudgetLimits limits = options.limits;
-    if (!limits.passes && !limits.seconds && !limits.target_error) limits.passes = uint64_t(built.settings.samples_per_pixel);
+    if (!limits.passes && !limits.seconds && !limits.target_error)
+        limits.passes = uint64_t(built.settings.samples_per_pixel);
     if (options.replay) limits = {1, {}, {}};
     RenderSession session(*device, built.scene, device_scene, film, limits);
     session.seed = options.seed.value_or(built.settings.seed);
@@ -189,9 +198,12 @@ int render(const RenderOptions& options) {
     image.metadata = image_metadata(run, built.scene);
     for (const std::string& output : outputs) {
         const WriteResult written = write_image(output, image, options.write);
-        if (written.clamped > 0) fmt::print(stderr, "warning: {}: {} numbers were larger than a half float holds and were cut to 65504\n", output, written.clamped);
+        if (written.clamped > 0)
+            fmt::print(stderr, "warning: {}: {} numbers were larger than a half float holds and were cut to 65504\n",
+                       output, written.clamped);
     }
-    if (!options.statistics_file.empty()) write_file_atomically(options.statistics_file, statistics_json(run, built.scene).dump(2) + "\n");
+    if (!options.statistics_file.empty())
+        write_file_atomically(options.statistics_file, statistics_json(run, built.scene).dump(2) + "\n");
     if (!options.quiet) print_summary(run, outputs);
     return int(run.interrupted ? ExitCode::kInterrupted : ExitCode::kDone);
 }

@@ -46,7 +46,8 @@ uint64_t parse_size(const std::string& text) {
     throw InputError(fmt::format("error: \"{}\" is no amount of memory; write 512M or 8G", text));
 }
 
-std::vector<int> parse_integers(const std::string& text, char separator, size_t count, const std::string& option, const std::string& form) {
+std::vector<int> parse_integers(const std::string& text, char separator, size_t count, const std::string& option,
+                                const std::string& form) {
     std::vector<int> numbers;
     const char* at = text.data();
     const char* const end = at + text.size();
@@ -62,7 +63,8 @@ std::vector<int> parse_integers(const std::string& text, char separator, size_t 
             break;
         }
     }
-    if (numbers.size() != count || at != end) throw InputError(fmt::format("error: {} {}: write {}", option, text, form));
+    if (numbers.size() != count || at != end)
+        throw InputError(fmt::format("error: {} {}: write {}", option, text, form));
     return numbers;
 }
 
@@ -74,8 +76,10 @@ std::vector<std::pair<std::string, std::string>> RenderOptions::settings_of(cons
 void RenderOptions::finish() {
     load_plugins(plugins);
     if (!texts.resolution.empty()) {
-        const std::vector<int> size = parse_integers(texts.resolution, 'x', 2, "--resolution", "WIDTHxHEIGHT, for example 640x480");
-        if (size[0] < 1 || size[1] < 1) throw InputError(fmt::format("error: --resolution {}: both sides must be at least 1", texts.resolution));
+        const std::vector<int> size =
+            parse_integers(texts.resolution, 'x', 2, "--resolution", "WIDTHxHEIGHT, for example 640x480");
+        if (size[0] < 1 || size[1] < 1)
+            throw InputError(fmt::format("error: --resolution {}: both sides must be at least 1", texts.resolution));
         build.resolution = {size[0], size[1]};
     }
     if (!texts.crop.empty()) {
@@ -101,10 +105,12 @@ void RenderOptions::finish() {
     for (const std::string& setting : texts.settings) {
         const size_t dot = setting.find('.'), equals = setting.find('=');
         if (dot == std::string::npos || equals == std::string::npos || dot > equals || dot == 0)
-            throw InputError(fmt::format("error: --set {}: write SECTION.KEY=VALUE, for example integrator.maxdepth=12", setting));
+            throw InputError(
+                fmt::format("error: --set {}: write SECTION.KEY=VALUE, for example integrator.maxdepth=12", setting));
         const std::string section = setting.substr(0, dot);
         if (section != "integrator" && section != "backend")
-            throw InputError(fmt::format("error: --set {}: there is no section \"{}\"; sections are integrator, backend", setting, section));
+            throw InputError(fmt::format(
+                "error: --set {}: there is no section \"{}\"; sections are integrator, backend", setting, section));
         sections_[section].emplace_back(setting.substr(dot + 1, equals - dot - 1), setting.substr(equals + 1));
     }
     for (const auto& [key, value] : settings_of("backend")) device.settings[key] = value;
@@ -112,27 +118,40 @@ void RenderOptions::finish() {
 
 void add_render_options(CLI::App& command, RenderOptions& o) {
     command.add_option("SCENE", o.scene, "Scene in pbrt-v4's text format")->required();
-    command.add_option("-o,--output", o.outputs, "Image to write: .exr, .pfm or .png; may be given several times")->type_name("IMAGE");
-    command.add_option("--integrator", o.integrator, "Integrator in place of the scene's, with parameters")->type_name("NAME[:key=value,...]");
-    command.add_option("--backend", o.backend, "What computes: see `lampyris devices`")->capture_default_str()->type_name("NAME");
+    command.add_option("-o,--output", o.outputs, "Image to write: .exr, .pfm or .png; may be given several times")
+        ->type_name("IMAGE");
+    command.add_option("--integrator", o.integrator, "Integrator in place of the scene's, with parameters")
+        ->type_name("NAME[:key=value,...]");
+    command.add_option("--backend", o.backend, "What computes: see `lampyris devices`")
+        ->capture_default_str()
+        ->type_name("NAME");
     command.add_option("--device", o.device.device, "Number or part of the name of the device")->type_name("N|NAME");
-    command.add_option("--threads", o.device.threads, "Threads of the CPU (default: all)")->check(CLI::Range(1u, 4096u));
+    command.add_option("--threads", o.device.threads, "Threads of the CPU (default: all)")
+        ->check(CLI::Range(1u, 4096u));
     command.add_option("--seed", o.seed, "Seed of the random numbers");
     command.add_option("--resolution", o.texts.resolution, "Size in place of the scene's")->type_name("WxH");
     command.add_option("--crop", o.texts.crop, "Render these pixels only (half-open)")->type_name("x0,y0,x1,y1");
     command.add_option("--spp", o.texts.spp, "Stop after this many samples per pixel")->type_name("N");
     command.add_option("--passes", o.texts.passes, "Stop after this many passes")->type_name("N");
-    command.add_option("--time", o.texts.time, "Stop after this much rendering time: 30s, 5min, 2h")->type_name("DURATION");
-    command.add_option("--target-error", o.texts.target_error, "Stop when the estimated relMSE is below this")->type_name("E");
-    command.add_option("--reference", o.reference, "Reference image: the statistics tell the error over time")->type_name("REF.exr");
+    command.add_option("--time", o.texts.time, "Stop after this much rendering time: 30s, 5min, 2h")
+        ->type_name("DURATION");
+    command.add_option("--target-error", o.texts.target_error, "Stop when the estimated relMSE is below this")
+        ->type_name("E");
+    command.add_option("--reference", o.reference, "Reference image: the statistics tell the error over time")
+        ->type_name("REF.exr");
     command.add_option("--stats", o.statistics_file, "Write what it cost as JSON")->type_name("FILE.json");
     command.add_option("--plugin", o.plugins, "Load a plugin; may be given several times")->type_name("FILE.so");
-    command.add_flag("--skip-unsupported", o.skip_unsupported, "Leave out what Lampyris does not simulate, and list it");
-    command.add_option("--max-memory", o.texts.max_memory, "Most memory for buffers and acceleration structures: 512M, 8G")->type_name("SIZE");
+    command.add_flag("--skip-unsupported", o.skip_unsupported,
+                     "Leave out what Lampyris does not simulate, and list it");
+    command
+        .add_option("--max-memory", o.texts.max_memory, "Most memory for buffers and acceleration structures: 512M, 8G")
+        ->type_name("SIZE");
     command.add_option("--view", o.write.view, "How a PNG shows light")->capture_default_str()->type_name("NAME");
     command.add_option("--exposure", o.write.exposure, "Exposure of a PNG, in stops")->type_name("EV");
-    command.add_option("--replay", o.texts.replay, "Render one sample of one pixel and print it")->type_name("X,Y,PASS");
-    command.add_option("--set", o.texts.settings, "Any parameter: integrator.maxdepth=12, backend.ray_query=on")->type_name("SECTION.KEY=VALUE");
+    command.add_option("--replay", o.texts.replay, "Render one sample of one pixel and print it")
+        ->type_name("X,Y,PASS");
+    command.add_option("--set", o.texts.settings, "Any parameter: integrator.maxdepth=12, backend.ray_query=on")
+        ->type_name("SECTION.KEY=VALUE");
     command.add_flag("-q,--quiet", o.quiet, "Only errors are told");
 }
 

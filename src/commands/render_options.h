@@ -52,6 +52,7 @@ void add_render_options(CLI::App& command, RenderOptions& options);
 double parse_duration(const std::string& text);
 uint64_t parse_size(const std::string& text);
 // N integers separated by `separator`. Throws InputError: "error: OPTION text: expected FORM".
-std::vector<int> parse_integers(const std::string& text, char separator, size_t count, const std::string& option, const std::string& form);
+std::vector<int> parse_integers(const std::string& text, char separator, size_t count, const std::string& option,
+                                const std::string& form);
 
 }  // namespace lampyris

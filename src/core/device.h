@@ -47,7 +47,8 @@ struct DeviceStatistics {
     double compile_s = 0;  // shaders
     size_t memory_bytes = 0, peak_memory_bytes = 0;
     std::map<std::string, double> kernel_s;  // seconds in each kernel, by its file's name
-    std::map<std::string, size_t> spirv_bytes; // size of each kernel's SPIR-V, by its file's name; empty on CPU backends
+    std::map<std::string, size_t>
+        spirv_bytes;  // size of each kernel's SPIR-V, by its file's name; empty on CPU backends
 };
 
 class Device {
@@ -70,16 +71,16 @@ class Device {
     // Runs the kernel for the indices [begin, begin + count), split as the device needs; `buffers[i]` is binding i of set 1.
     // Returns when it is done. `scene` may be null for kernels that use no scene buffer. Throws MachineError when the device
     // fails, or when a kernel reports an unfinished loop.
-    virtual void run(const Kernel& kernel, const DeviceScene* scene, std::span<const BufferHandle> buffers, uint32_t begin,
-                     uint32_t count) = 0;
+    virtual void run(const Kernel& kernel, const DeviceScene* scene, std::span<const BufferHandle> buffers,
+                     uint32_t begin, uint32_t count) = 0;
 
     virtual DeviceStatistics statistics() const = 0;
 };
 
 struct DeviceOptions {
-    std::string device;       // number or part of the name; empty: the first
-    unsigned threads = 0;     // 0: all
-    uint64_t max_memory = 0;  // bytes; 0: no limit
+    std::string device;                           // number or part of the name; empty: the first
+    unsigned threads = 0;                         // 0: all
+    uint64_t max_memory = 0;                      // bytes; 0: no limit
     std::map<std::string, std::string> settings;  // --set backend.KEY=VALUE
 };
 
@@ -102,6 +103,6 @@ struct BackendRegistration {
 std::unique_ptr<Device> create_device(const std::string& backend, const DeviceOptions& options = {});
 std::vector<std::string> backend_names();
 std::vector<std::pair<std::string, std::string>> backend_summaries();  // name, summary
-std::vector<DeviceInfo> list_devices();  // of every backend
+std::vector<DeviceInfo> list_devices();                                // of every backend
 
 }  // namespace lampyris

@@ -87,7 +87,8 @@ void Diagnostics::warning(Location location, std::string message, std::string hi
 // NOLINTBEGIN(performance-unnecessary-value-param): the texts are made for the call; none is copied.
 void Diagnostics::unsupported(Location location, std::string what, std::string hint) {
     if (!skip_unsupported_) {
-        error(location, what + " is not supported", hint.empty() ? "--skip-unsupported renders the scene without it" : hint);
+        error(location, what + " is not supported",
+              hint.empty() ? "--skip-unsupported renders the scene without it" : hint);
         return;
     }
     warning(location, what + " is not supported and is left out", hint);
@@ -115,13 +116,15 @@ void Diagnostics::throw_if_errors() const {
     throw InputError(message);
 }
 
-std::vector<std::string> Diagnostics::formatted(const std::vector<Record>& records, const char* severity, size_t most) const {
+std::vector<std::string> Diagnostics::formatted(const std::vector<Record>& records, const char* severity,
+                                                size_t most) const {
     std::vector<const Record*> order;
     order.reserve(records.size());
     for (const Record& record : records) order.push_back(&record);
     // Stable: what is wrong with one place is told in the order in which it was found. Without a place: last.
     std::ranges::stable_sort(order, [](const Record* a, const Record* b) {
-        return a->location.file != b->location.file ? a->location.file < b->location.file : a->location.offset < b->location.offset;
+        return a->location.file != b->location.file ? a->location.file < b->location.file
+                                                    : a->location.offset < b->location.offset;
     });
     std::vector<std::string> texts;
     for (size_t i = 0; i < std::min(order.size(), most); ++i) texts.push_back(format(severity, *order[i]));
@@ -170,7 +173,8 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
     size_t best_distance = 2 * std::max<size_t>(1, word.size() / 3) + 1;
     for (const std::string& candidate : candidates) {
         if (candidate.empty() || candidate.size() > kMaxWord) continue;
-        const size_t longer = std::max(word.size(), candidate.size()), shorter = std::min(word.size(), candidate.size());
+        const size_t longer = std::max(word.size(), candidate.size()),
+                     shorter = std::min(word.size(), candidate.size());
         if (2 * (longer - shorter) >= best_distance) continue;
         const size_t distance = distance_in_halves(word, candidate);
         if (distance < best_distance) {

@@ -61,7 +61,8 @@ class Sources {
     };
     Place place(Location location) const;
     std::string describe(Location location) const;  // "file:line:column"
-    std::string excerpt(Location location) const;   // the line, a newline, and a caret below the place; long lines are cut
+    std::string excerpt(
+        Location location) const;  // the line, a newline, and a caret below the place; long lines are cut
 
  private:
     struct Source {
@@ -91,7 +92,8 @@ class Diagnostics {
     bool has_errors() const { return error_count_ > 0; }
     // Throws InputError with every error so far (at most kMaxShown in full, then a count).
     void throw_if_errors() const;
-    std::vector<std::string> warnings() const;  // formatted, with location; at most kMaxWarnings, and a line if there were more
+    std::vector<std::string> warnings()
+        const;  // formatted, with location; at most kMaxWarnings, and a line if there were more
     const std::vector<std::string>& unsupported_list() const { return skipped_; }  // "what (file:line)"
     bool full() const { return error_count_ > kMaxKept; }  // nobody will read a further error's text
     size_t error_count() const { return error_count_; }

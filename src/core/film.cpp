@@ -39,12 +39,16 @@ std::array<Estimate, 3> estimates(const kernel::FilmPixel& p) {
 }  // namespace
 
 Film::Film(Device& device, const Scene& scene, const std::array<int, 4>& crop)
-    : window_(crop[0], crop[1], crop[2] - crop[0], crop[3] - crop[1]), full_width_(scene.width()), full_height_(scene.height()) {
+    : window_(crop[0], crop[1], crop[2] - crop[0], crop[3] - crop[1]),
+      full_width_(scene.width()),
+      full_height_(scene.height()) {
     // The device's copy, this one, and the image with its channels (14 floats a pixel).
     const uint64_t needed = uint64_t(pixel_count()) * (2 * sizeof(kernel::FilmPixel) + 14 * sizeof(float));
     if (needed > machine_memory())
-        throw MachineError(fmt::format("error: a film of {}x{} pixels needs {:.1f} GB, and this machine has {:.1f} GB of memory; render a part of it (--crop), or at a smaller --resolution",
-                                       window_.z, window_.w, double(needed) * 1e-9, double(machine_memory()) * 1e-9));
+        throw MachineError(
+            fmt::format("error: a film of {}x{} pixels needs {:.1f} GB, and this machine has {:.1f} GB of memory; "
+                        "render a part of it (--crop), or at a smaller --resolution",
+                        window_.z, window_.w, double(needed) * 1e-9, double(machine_memory()) * 1e-9));
     buffer_ = device.create_buffer(size_t(pixel_count()) * sizeof(kernel::FilmPixel), "the film");
     buffer_->fill_zero();
     pixels_.resize(pixel_count());
@@ -63,7 +67,8 @@ FilmSummary Film::summary() const {
         result.min_samples = std::min(result.min_samples, p.counts.x);
         result.max_samples = std::max(result.max_samples, p.counts.x);
         if (p.counts.z > 0 && result.non_finite == 0)
-            result.first_non_finite = {uint32_t(window_.x + i % window_.z), uint32_t(window_.y + i / window_.z), p.counts.w};
+            result.first_non_finite = {uint32_t(window_.x + i % window_.z), uint32_t(window_.y + i / window_.z),
+                                       p.counts.w};
         result.non_finite += p.counts.z;
         for (const Estimate& e : estimates(p)) error += e.variance / (e.mean * e.mean + 0.01);
     }

@@ -5,7 +5,8 @@
 namespace lampyris {
 
 Registry<IntegratorFactory>& integrators() {
-    static Registry<IntegratorFactory> registry("integrator", "How light is transported: the algorithm that makes the image.");
+    static Registry<IntegratorFactory> registry("integrator",
+                                                "How light is transported: the algorithm that makes the image.");
     return registry;
 }
 

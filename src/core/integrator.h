@@ -39,10 +39,10 @@ struct IntegratorRegistration {
     IntegratorRegistration(const char* name, const char* summary, IntegratorFactory factory);
 };
 
-#define REGISTER_INTEGRATOR(Class, LIST, name, summary)                                      \
-    static const ::lampyris::IntegratorRegistration registration_of_##Class(                 \
-        name, summary,                                                                       \
-        ::lampyris::IntegratorFactory{&::lampyris::RegisteredIntegrator<Class>::create,      \
+#define REGISTER_INTEGRATOR(Class, LIST, name, summary)                                 \
+    static const ::lampyris::IntegratorRegistration registration_of_##Class(            \
+        name, summary,                                                                  \
+        ::lampyris::IntegratorFactory{&::lampyris::RegisteredIntegrator<Class>::create, \
                                       PARAMETER_FIELDS(decltype(Class::params), LIST)});
 
 // An upload of one struct as a kernel's argument buffer.

@@ -93,7 +93,8 @@ std::string ParameterSpec::default_text() const {
     if (required) return "(required)";
     const bool scalar = !array && text.empty();
     if (scalar && type == ParameterType::kBool) return number != 0.0 ? "true" : "false";
-    if (scalar && (type == ParameterType::kFloat || type == ParameterType::kInteger)) return fmt::format("{:g}", number);
+    if (scalar && (type == ParameterType::kFloat || type == ParameterType::kInteger))
+        return fmt::format("{:g}", number);
     return text;
 }
 
@@ -113,9 +114,10 @@ ParameterReader::ParameterReader(const ParameterSpecs& specs, Entity& entity, Di
     : specs_(&specs), entity_(&entity), diagnostics_(&diagnostics) {
     for (const ParameterSpec& spec : specs)
         if (spec.required && !has(spec.name))
-            diagnostics.error(entity.location,
-                              fmt::format("\"{}\" needs the parameter \"{} {}\"", entity.type, type_name(spec.type), spec.name),
-                              spec.doc);
+            diagnostics.error(
+                entity.location,
+                fmt::format("\"{}\" needs the parameter \"{} {}\"", entity.type, type_name(spec.type), spec.name),
+                spec.doc);
 }
 
 const ParameterSpec& ParameterReader::spec(std::string_view name) const {
@@ -180,7 +182,8 @@ const Parameter* ParameterReader::find(std::string_view name) {
 
 Location ParameterReader::location(std::string_view name) const {
     for (const Parameter& parameter : entity_->parameters.parameters)
-        if (parameter.name == name) return parameter.value_location.known() ? parameter.value_location : parameter.location;
+        if (parameter.name == name)
+            return parameter.value_location.known() ? parameter.value_location : parameter.location;
     return entity_->location;
 }
 
@@ -225,8 +228,8 @@ void set_parameter(void* target, const ParameterFields& fields, std::string_view
         if (candidate.spec.name == key) field = &candidate;
     if (!field) {
         const std::vector<std::string> names = spec_names(specs_of(fields));
-        throw InputError(fmt::format("error: {} has no parameter \"{}\"{}; it has: {}", of_what, key, did_you_mean(key, names),
-                                     names.empty() ? "none" : list_of(names)));
+        throw InputError(fmt::format("error: {} has no parameter \"{}\"{}; it has: {}", of_what, key,
+                                     did_you_mean(key, names), names.empty() ? "none" : list_of(names)));
     }
     double number = 0.0;
     bool good;
@@ -278,7 +281,8 @@ std::vector<std::pair<std::string, std::string>> parse_settings(std::string_view
 PluginChoice parse_plugin_choice(std::string_view text) {
     const size_t colon = text.find(':');
     PluginChoice choice{std::string(text.substr(0, colon)), {}};
-    if (choice.name.empty()) throw InputError(fmt::format("error: \"{}\" names no plugin; the form is NAME[:key=value,...]", text));
+    if (choice.name.empty())
+        throw InputError(fmt::format("error: \"{}\" names no plugin; the form is NAME[:key=value,...]", text));
     if (colon != std::string_view::npos) choice.settings = parse_settings(text.substr(colon + 1));
     return choice;
 }

@@ -28,23 +28,44 @@ struct ParameterSpec {
     bool texturable = false;                     // a texture of the same name may stand in for the value
     bool spectral = false;                       // of a float: a spectrum may stand in for it
     bool required = false;
-    double number = 0.0;                // default of floats, integers and bools
-    std::string text;                   // default of strings; of everything else, what its absence means
+    double number = 0.0;  // default of floats, integers and bools
+    std::string text;     // default of strings; of everything else, what its absence means
     double minimum = -std::numeric_limits<double>::infinity();
     double maximum = std::numeric_limits<double>::infinity();
-    bool above_minimum = false;         // the minimum itself is outside
-    std::vector<std::string> choices;   // of strings
+    bool above_minimum = false;        // the minimum itself is outside
+    std::vector<std::string> choices;  // of strings
     std::string unit;
     std::string doc;
 
     // Chained onto one of the functions below: real("radius", 1, "radius").above(0).in("scene units").
-    ParameterSpec&& at_least(double low) && { minimum = low; return std::move(*this); }
-    ParameterSpec&& above(double low) && { minimum = low, above_minimum = true; return std::move(*this); }
-    ParameterSpec&& between(double low, double high) && { minimum = low, maximum = high; return std::move(*this); }
-    ParameterSpec&& one_of(std::vector<std::string> list) && { choices = std::move(list); return std::move(*this); }
-    ParameterSpec&& in(std::string of) && { unit = std::move(of); return std::move(*this); }
-    ParameterSpec&& textured() && { texturable = true; return std::move(*this); }
-    ParameterSpec&& needed() && { required = true; return std::move(*this); }
+    ParameterSpec&& at_least(double low) && {
+        minimum = low;
+        return std::move(*this);
+    }
+    ParameterSpec&& above(double low) && {
+        minimum = low, above_minimum = true;
+        return std::move(*this);
+    }
+    ParameterSpec&& between(double low, double high) && {
+        minimum = low, maximum = high;
+        return std::move(*this);
+    }
+    ParameterSpec&& one_of(std::vector<std::string> list) && {
+        choices = std::move(list);
+        return std::move(*this);
+    }
+    ParameterSpec&& in(std::string of) && {
+        unit = std::move(of);
+        return std::move(*this);
+    }
+    ParameterSpec&& textured() && {
+        texturable = true;
+        return std::move(*this);
+    }
+    ParameterSpec&& needed() && {
+        required = true;
+        return std::move(*this);
+    }
 
     bool contains(double value) const;  // in range; NaN is not
     std::string type_text() const;      // "float or texture", "string, one of a, b"
@@ -78,7 +99,7 @@ class ParameterReader {
     std::vector<float> get_tuple(std::string_view name, size_t count);  // empty when absent or wrong
     std::vector<float> take_floats(std::string_view name);              // whole arrays, moved out
     std::vector<int32_t> take_ints(std::string_view name);
-    const Parameter* find(std::string_view name);  // whatever is there by that name, marked as used
+    const Parameter* find(std::string_view name);    // whatever is there by that name, marked as used
     Location location(std::string_view name) const;  // of the value, or of the directive where it is absent
 
     // A message at a parameter (or at the directive, where the parameter is absent).
@@ -109,21 +130,23 @@ struct ParameterField {
 using ParameterFields = std::vector<ParameterField>;
 
 template <typename T>
-    requires std::same_as<T, int> || std::same_as<T, unsigned> || std::same_as<T, float>
-ParameterField parameter_field(const char* name, size_t offset, double default_value, double low, double high,
-                               const char* doc) {
-    ParameterSpec spec = std::is_same_v<T, float> ? real(name, default_value, doc) : integer(name, int(default_value), doc);
+requires std::same_as<T, int> || std::same_as<T, unsigned> || std::same_as<T, float> ParameterField
+parameter_field(const char* name, size_t offset, double default_value, double low, double high, const char* doc) {
+    ParameterSpec spec =
+        std::is_same_v<T, float> ? real(name, default_value, doc) : integer(name, int(default_value), doc);
     using Type = ParameterField::Type;
     return {std::move(spec).between(low, high), offset,
-            std::is_same_v<T, float> ? Type::kFloat : std::is_same_v<T, int> ? Type::kInt : Type::kUint};
+            std::is_same_v<T, float> ? Type::kFloat
+            : std::is_same_v<T, int> ? Type::kInt
+                                     : Type::kUint};
 }
 
 #define LAMPYRIS_PARAMETER_FIELD(type, name, default_value, low, high, doc) \
     ::lampyris::parameter_field<type>(#name, offsetof(Struct, name), default_value, low, high, doc),
 // The fields of a struct declared with PARAMS(S, LIST), as an expression.
-#define PARAMETER_FIELDS(S, LIST)                                       \
-    [] {                                                                \
-        using Struct = S;                                               \
+#define PARAMETER_FIELDS(S, LIST)                                           \
+    [] {                                                                    \
+        using Struct = S;                                                   \
         return ::lampyris::ParameterFields{LIST(LAMPYRIS_PARAMETER_FIELD)}; \
     }()
 

@@ -31,9 +31,10 @@ std::string read_abi(const std::string& file) {
     const std::string mark = std::string(kSymbol) + "=";  // put together here, so that only plugins hold it whole
     const size_t at = bytes.find(mark);
     if (at == std::string::npos)
-        throw InputError(fmt::format("{}: error: this shared object is no Lampyris plugin: it has no symbol "
-                                     "{}; lampyris_add_plugin() in CMake makes it",
-                                     file, kSymbol));
+        throw InputError(
+            fmt::format("{}: error: this shared object is no Lampyris plugin: it has no symbol "
+                        "{}; lampyris_add_plugin() in CMake makes it",
+                        file, kSymbol));
     return bytes.substr(at + mark.size(), bytes.find('\0', at) - at - mark.size());
 }
 
@@ -53,9 +54,10 @@ void load_plugin(const std::string& file) {
 
     const std::string abi = read_abi(path);
     if (abi != plugin_abi())
-        throw InputError(fmt::format("{}: error: this plugin was built for Lampyris {}, and this is Lampyris {}; "
-                                     "build it again",
-                                     file, abi, plugin_abi()));
+        throw InputError(
+            fmt::format("{}: error: this plugin was built for Lampyris {}, and this is Lampyris {}; "
+                        "build it again",
+                        file, abi, plugin_abi()));
     // Never closed: registries and kernels keep pointers into it.
     if (!dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL)) throw InputError(fmt::format("{}: error: {}", file, dlerror()));
     loaded.insert(path);
@@ -75,7 +77,8 @@ void load_plugin_path(std::string_view list) {
         std::vector<std::string> files;
         for (const fs::directory_entry& found : fs::directory_iterator(entry, failed))
             if (found.path().extension() == ".so") files.push_back(found.path().string());
-        if (failed) throw InputError(fmt::format("{}: error: cannot read this folder of plugins: {}", entry, failed.message()));
+        if (failed)
+            throw InputError(fmt::format("{}: error: cannot read this folder of plugins: {}", entry, failed.message()));
         std::sort(files.begin(), files.end());
         for (const std::string& file : files) load_plugin(file);
     }

@@ -30,7 +30,8 @@ void install_interrupt_handler() {
 
 bool interrupt_requested() { return interrupt_flag.load(); }
 
-RenderSession::RenderSession(Device& device_, const Scene& scene_, DeviceSceneHandle device_scene_, Film& film_, BudgetLimits limits)
+RenderSession::RenderSession(Device& device_, const Scene& scene_, DeviceSceneHandle device_scene_, Film& film_,
+                             BudgetLimits limits)
     : device(device_), scene(scene_), device_scene(std::move(device_scene_)), film(film_), limits_(limits) {
     progress_.estimated_error = std::numeric_limits<double>::quiet_NaN();
 }
@@ -75,7 +76,8 @@ void RenderSession::passes_finished(uint32_t count) {
     progress_.samples = summary.samples;
     // A handful of samples cannot vouch for an error.
     constexpr uint32_t kTrustedSamples = 8;
-    if (limits_.target_error && summary.min_samples >= kTrustedSamples && summary.estimated_relmse <= *limits_.target_error)
+    if (limits_.target_error && summary.min_samples >= kTrustedSamples &&
+        summary.estimated_relmse <= *limits_.target_error)
         progress_.finished = true;
     if (on_progress) on_progress(progress_, film);
 }

@@ -23,7 +23,8 @@ Json parameters_json(const std::vector<std::pair<std::string, std::string>>& par
 Json convergence_json(const std::vector<ConvergencePoint>& points) {
     Json array = Json::array();
     for (const ConvergencePoint& point : points) {
-        Json entry = {{"wall_s", point.wall_s}, {"passes", point.passes}, {"estimated_error", number(point.estimated_error)}};
+        Json entry = {
+            {"wall_s", point.wall_s}, {"passes", point.passes}, {"estimated_error", number(point.estimated_error)}};
         if (point.against_reference)
             for (const MetricFormula& formula : metric_formulas())
                 entry[formula.key] = number((*point.against_reference).*(formula.value));
@@ -79,7 +80,11 @@ nlohmann::ordered_json statistics_json(const RunRecord& run, const Scene& scene)
         {"phases", phases},
         {"kernels", kernels},
         {"spirv_bytes", spirv_bytes},
-        {"setup_s", {{"parse", run.parse_s}, {"scene", run.scene_s}, {"build", run.device_statistics.build_s}, {"compile", run.device_statistics.compile_s}}},
+        {"setup_s",
+         {{"parse", run.parse_s},
+          {"scene", run.scene_s},
+          {"build", run.device_statistics.build_s},
+          {"compile", run.device_statistics.compile_s}}},
         {"rays", run.film.rays},
         {"samples", run.film.samples},
         {"photons_emitted", 0},
@@ -97,13 +102,16 @@ nlohmann::ordered_json statistics_json(const RunRecord& run, const Scene& scene)
         {"interrupted", run.interrupted},
     };
     if (run.film.non_finite > 0)
-        result["first_non_finite"] = {{"x", run.film.first_non_finite[0]}, {"y", run.film.first_non_finite[1]}, {"pass", run.film.first_non_finite[2]}};
+        result["first_non_finite"] = {{"x", run.film.first_non_finite[0]},
+                                      {"y", run.film.first_non_finite[1]},
+                                      {"pass", run.film.first_non_finite[2]}};
     return result;
 }
 
 std::map<std::string, std::string> image_metadata(const RunRecord& run, const Scene& scene) {
     std::string parameters;
-    for (const auto& [name, value] : run.integrator_parameters) parameters += fmt::format("{}{}={}", parameters.empty() ? "" : ",", name, value);
+    for (const auto& [name, value] : run.integrator_parameters)
+        parameters += fmt::format("{}{}={}", parameters.empty() ? "" : ",", name, value);
     return {{"lampyris.version", version()},
             {"lampyris.scene", run.scene},
             {"lampyris.scene_hash", fmt::format("{:016x}", scene.hash)},

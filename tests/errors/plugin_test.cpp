@@ -41,7 +41,8 @@ TEST_F(PluginErrors, AMissingFileIsNamed) {
 }
 
 TEST_F(PluginErrors, AFolderIsNoPlugin) {
-    EXPECT_EQ(message(folder_.string()), folder_.string() + ": error: this is a folder; a plugin is a shared object (.so)");
+    EXPECT_EQ(message(folder_.string()),
+              folder_.string() + ": error: this is a folder; a plugin is a shared object (.so)");
 }
 
 TEST_F(PluginErrors, ATextIsNoSharedObject) {
@@ -50,16 +51,19 @@ TEST_F(PluginErrors, ATextIsNoSharedObject) {
 }
 
 TEST_F(PluginErrors, AnotherProgramsFileLacksTheSymbol) {
-    EXPECT_NE(message("/proc/self/exe").find("no Lampyris plugin: it has no symbol lampyris_plugin_abi"), std::string::npos);
+    EXPECT_NE(message("/proc/self/exe").find("no Lampyris plugin: it has no symbol lampyris_plugin_abi"),
+              std::string::npos);
     const std::string library = LAMPYRIS_BINARY_DIR "/liblampyris.so";
     EXPECT_NE(message(library).find("no Lampyris plugin"), std::string::npos);
 }
 
 TEST_F(PluginErrors, APluginForAnotherVersionIsNotLoaded) {
-    const std::string file = write("old.so", std::string("\177ELF junk lampyris_plugin") + "_abi=0.0.9 (abc)" + '\0' + "more");
-    EXPECT_EQ(message(file), fmt::format("{}: error: this plugin was built for Lampyris 0.0.9 (abc), and this is Lampyris {}; "
-                                         "build it again",
-                                         file, plugin_abi()));
+    const std::string file =
+        write("old.so", std::string("\177ELF junk lampyris_plugin") + "_abi=0.0.9 (abc)" + '\0' + "more");
+    EXPECT_EQ(message(file),
+              fmt::format("{}: error: this plugin was built for Lampyris 0.0.9 (abc), and this is Lampyris {}; "
+                          "build it again",
+                          file, plugin_abi()));
 }
 
 TEST_F(PluginErrors, ADamagedPluginIsTheLoadersError) {

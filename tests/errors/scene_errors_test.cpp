@@ -66,7 +66,8 @@ TEST_P(SceneErrors, AreToldWhereTheyAre) {
         place >> line >> colon >> column >> colon;
         std::string message;
         std::getline(place >> std::ws, message);
-        const std::string head = name + ":" + std::to_string(line) + ":" + std::to_string(column) + ": error: " + message;
+        const std::string head =
+            name + ":" + std::to_string(line) + ":" + std::to_string(column) + ": error: " + message;
         EXPECT_TRUE(error.starts_with(head)) << "expected " << head << "\nfound    " << error;
         const std::vector<std::string> shown = lines_of(error);
         ASSERT_EQ(shown.size(), 3u) << error;

@@ -11,76 +11,111 @@ void expect_error(const std::string& world, int line, int column, const std::vec
     const BuiltText text = build_world(world);
     ASSERT_EQ(text.errors.size(), 1u) << world << "\n" << text.all_errors();
     const std::string& error = text.errors.front();
-    EXPECT_TRUE(error.starts_with("test.pbrt:" + std::to_string(line + 3) + ":" + std::to_string(column) + ": error: ")) << error;
-    for (const std::string& word : words) EXPECT_NE(error.find(word), std::string::npos) << "no \"" << word << "\" in\n" << error;
+    EXPECT_TRUE(error.starts_with("test.pbrt:" + std::to_string(line + 3) + ":" + std::to_string(column) + ": error: "))
+        << error;
+    for (const std::string& word : words)
+        EXPECT_NE(error.find(word), std::string::npos) << "no \"" << word << "\" in\n" << error;
 }
 
 // The same, for what is known but not simulated; skipped, it must build.
 void expect_unsupported(const std::string& world, const std::vector<std::string>& words) {
     const BuiltText text = build_world(world);
     ASSERT_EQ(text.errors.size(), 1u) << world << "\n" << text.all_errors();
-    for (const std::string& word : words) EXPECT_NE(text.errors.front().find(word), std::string::npos) << "no \"" << word << "\" in\n" << text.errors.front();
+    for (const std::string& word : words)
+        EXPECT_NE(text.errors.front().find(word), std::string::npos) << "no \"" << word << "\" in\n"
+                                                                     << text.errors.front();
     const BuiltText skipped = build_world(world, true);
     EXPECT_EQ(skipped.all_errors(), "");
     ASSERT_EQ(skipped.unsupported.size(), 1u);
     EXPECT_EQ(skipped.scene().unsupported, skipped.unsupported);
 }
 
-const std::string kTriangle = "Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer indices\" [ 0 1 2 ]\n";
+const std::string kTriangle =
+    "Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer indices\" [ 0 1 2 ]\n";
 
 TEST(SceneMeaning, UnknownNames) {
     expect_error("Shape \"sphre\"", 1, 7, {"unknown shape \"sphre\"", "did you mean \"sphere\"?", "trianglemesh"});
-    expect_error("Material \"difuse\"\n" + kTriangle, 1, 10, {"unknown material \"difuse\"", "did you mean \"diffuse\"?"});
+    expect_error("Material \"difuse\"\n" + kTriangle, 1, 10,
+                 {"unknown material \"difuse\"", "did you mean \"diffuse\"?"});
     expect_error("LightSource \"pint\"", 1, 13, {"unknown light \"pint\"", "did you mean \"point\"?"});
     expect_error("AreaLightSource \"difuse\"\n" + kTriangle, 1, 17, {"unknown area light", "diffuse"});
 }
 
 TEST(SceneMeaning, UnknownParametersAreFatal) {
-    expect_error("Shape \"sphere\" \"float radis\" 2", 1, 16, {"\"radis\" is unknown to shape \"sphere\"", "did you mean \"radius\"?", "zmin"});
-    expect_error("Material \"dielectric\" \"float ior\" 1.5\n" + kTriangle, 1, 23, {"\"ior\" is unknown to material \"dielectric\"", "eta"});
+    expect_error("Shape \"sphere\" \"float radis\" 2", 1, 16,
+                 {"\"radis\" is unknown to shape \"sphere\"", "did you mean \"radius\"?", "zmin"});
+    expect_error("Material \"dielectric\" \"float ior\" 1.5\n" + kTriangle, 1, 23,
+                 {"\"ior\" is unknown to material \"dielectric\"", "eta"});
 }
 
 TEST(SceneMeaning, MeshesMustFit) {
-    expect_error("Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer indices\" [ 0 1 3 ]", 1, 75, {"index 3 (number 2", "outside of the 3 vertices", "0 to 2"});
-    expect_error("Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer indices\" [ 0 1 -1 ]", 1, 75, {"index -1"});
-    expect_error("Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer indices\" [ 0 1 ]", 1, 75, {"\"indices\" has 2 numbers", "3 a face"});
-    expect_error("Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"point2 uv\" [ 0 0 1 0 ]", 1, 69, {"\"uv\" has 4 numbers for 3 vertices", "6"});
+    expect_error("Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer indices\" [ 0 1 3 ]", 1, 75,
+                 {"index 3 (number 2", "outside of the 3 vertices", "0 to 2"});
+    expect_error("Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer indices\" [ 0 1 -1 ]", 1, 75,
+                 {"index -1"});
+    expect_error("Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer indices\" [ 0 1 ]", 1, 75,
+                 {"\"indices\" has 2 numbers", "3 a face"});
+    expect_error("Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"point2 uv\" [ 0 0 1 0 ]", 1, 69,
+                 {"\"uv\" has 4 numbers for 3 vertices", "6"});
     expect_error("Shape \"trianglemesh\" \"integer indices\" [ 0 1 2 ]", 1, 1, {"needs the parameter \"point3 P\""});
-    expect_error("Shape \"bilinearmesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 1 1 0 ] \"integer indices\" [ 0 1 2 ]", 1, 81, {"4 a face"});
-    expect_error("Shape \"loopsubdiv\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 1 1 1 ] \"integer indices\" [ 0 1 2 0 1 3 ]", 1, 79, {"cannot be subdivided", "both run from vertex 0 to 1"});
+    expect_error("Shape \"bilinearmesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 1 1 0 ] \"integer indices\" [ 0 1 2 ]", 1, 81,
+                 {"4 a face"});
+    expect_error("Shape \"loopsubdiv\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 1 1 1 ] \"integer indices\" [ 0 1 2 0 1 3 ]", 1,
+                 79, {"cannot be subdivided", "both run from vertex 0 to 1"});
     expect_error("Shape \"plymesh\" \"string filename\" \"nowhere.ply\"", 1, 35, {"there is no file", "nowhere.ply"});
 }
 
 TEST(SceneMeaning, ValuesMustBeInRange) {
     expect_error("Shape \"sphere\" \"float radius\" -2", 1, 31, {"\"radius\" is -2", "must be above 0"});
-    expect_error("Shape \"sphere\" \"float radius\" 1 \"float zmin\" 2 \"float zmax\" 3", 1, 46, {"leave nothing of the sphere"});
+    expect_error("Shape \"sphere\" \"float radius\" 1 \"float zmin\" 2 \"float zmax\" 3", 1, 46,
+                 {"leave nothing of the sphere"});
     expect_error("Shape \"disk\" \"float innerradius\" 1", 1, 34, {"leaves nothing of the disk"});
-    expect_error("Material \"diffuse\" \"rgb reflectance\" [ 0.5 1.5 0.5 ]\n" + kTriangle, 1, 40, {"component 1.5", "between 0 and 1"});
-    expect_error("Material \"mix\" \"string materials\" [ \"a\" \"b\" ] \"float amount\" 2\nMakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMakeNamedMaterial \"b\" \"string type\" \"diffuse\"\n" + kTriangle, 1, 62, {"\"amount\" is 2", "0 to 1"});
+    expect_error("Material \"diffuse\" \"rgb reflectance\" [ 0.5 1.5 0.5 ]\n" + kTriangle, 1, 40,
+                 {"component 1.5", "between 0 and 1"});
+    expect_error(
+        "Material \"mix\" \"string materials\" [ \"a\" \"b\" ] \"float amount\" 2\nMakeNamedMaterial \"a\" \"string "
+        "type\" \"diffuse\"\nMakeNamedMaterial \"b\" \"string type\" \"diffuse\"\n" +
+            kTriangle,
+        1, 62, {"\"amount\" is 2", "0 to 1"});
     expect_error("Scale 1 0 1\n" + kTriangle, 2, 1, {"cannot be inverted"});
     expect_error("LightSource \"spot\" \"point3 from\" [ 1 2 3 ] \"point3 to\" [ 1 2 3 ]", 1, 58, {"the same point"});
 }
 
 TEST(SceneMeaning, SpectraMustMakeSense) {
-    expect_error("Material \"conductor\" \"spectrum eta\" \"metal-Al-ta\"\n" + kTriangle, 1, 37, {"neither a named spectrum nor a file", "did you mean \"metal-Al-eta\"?"});
-    expect_error("LightSource \"point\" \"spectrum I\" [ 500 1 400 2 ]", 1, 21, {"wavelengths of \"spectrum I\" do not increase"});
-    expect_error("LightSource \"point\" \"float I\" 5", 1, 21, {"\"I\" is of type float", "rgb, blackbody or spectrum"});
+    expect_error("Material \"conductor\" \"spectrum eta\" \"metal-Al-ta\"\n" + kTriangle, 1, 37,
+                 {"neither a named spectrum nor a file", "did you mean \"metal-Al-eta\"?"});
+    expect_error("LightSource \"point\" \"spectrum I\" [ 500 1 400 2 ]", 1, 21,
+                 {"wavelengths of \"spectrum I\" do not increase"});
+    expect_error("LightSource \"point\" \"float I\" 5", 1, 21,
+                 {"\"I\" is of type float", "rgb, blackbody or spectrum"});
     expect_error("LightSource \"point\" \"blackbody I\" -5", 1, 35, {"temperature above 0 K"});
 }
 
 TEST(SceneMeaning, MixesRefer) {
-    expect_error("MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMaterial \"mix\" \"string materials\" [ \"a\" \"c\" ]\n" + kTriangle, 2, 37, {"no material named \"c\""});
-    expect_error("MakeNamedMaterial \"a\" \"string type\" \"mix\" \"string materials\" [ \"a\" \"b\" ]\nMakeNamedMaterial \"b\" \"string type\" \"diffuse\"\nNamedMaterial \"a\"\n" + kTriangle, 1, 64, {"contains itself"});
+    expect_error(
+        "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMaterial \"mix\" \"string materials\" [ \"a\" \"c\" ]\n" +
+            kTriangle,
+        2, 37, {"no material named \"c\""});
+    expect_error(
+        "MakeNamedMaterial \"a\" \"string type\" \"mix\" \"string materials\" [ \"a\" \"b\" ]\nMakeNamedMaterial \"b\" "
+        "\"string type\" \"diffuse\"\nNamedMaterial \"a\"\n" +
+            kTriangle,
+        1, 64, {"contains itself"});
     expect_error("Material \"mix\" \"string materials\" [ \"a\" ]\n" + kTriangle, 1, 37, {"\"mix\" of 1 materials"});
     expect_error("Material \"mix\"\n" + kTriangle, 1, 1, {"needs the parameter \"string materials\""});
 }
 
 TEST(SceneMeaning, WhatIsNotSupportedIsToldAndCanBeSkipped) {
-    expect_unsupported("Material \"dielectric\" \"spectrum eta\" \"glass-BK7\"\n" + kTriangle, {"test.pbrt:4:38", "not supported", "dispersion", "1.5168"});
+    expect_unsupported("Material \"dielectric\" \"spectrum eta\" \"glass-BK7\"\n" + kTriangle,
+                       {"test.pbrt:4:38", "not supported", "dispersion", "1.5168"});
     expect_unsupported("Material \"subsurface\"\n" + kTriangle, {"test.pbrt:4:10", "material \"subsurface\""});
-    expect_unsupported("ActiveTransform EndTime\nTranslate 1 0 0\nActiveTransform All\n" + kTriangle, {"test.pbrt:7:1", "motion blur"});
-    expect_unsupported("MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\nMediumInterface \"fog\" \"\"\n" + kTriangle + kTriangle, {"test.pbrt:4:1", "participating medium \"fog\""});
-    expect_unsupported("Shape \"curve\" \"point3 P\" [ 0 0 0 1 0 0 2 0 0 3 0 0 ]", {"test.pbrt:4:7", "shape \"curve\""});
+    expect_unsupported("ActiveTransform EndTime\nTranslate 1 0 0\nActiveTransform All\n" + kTriangle,
+                       {"test.pbrt:7:1", "motion blur"});
+    expect_unsupported("MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\nMediumInterface \"fog\" \"\"\n" +
+                           kTriangle + kTriangle,
+                       {"test.pbrt:4:1", "participating medium \"fog\""});
+    expect_unsupported("Shape \"curve\" \"point3 P\" [ 0 0 0 1 0 0 2 0 0 3 0 0 ]",
+                       {"test.pbrt:4:7", "shape \"curve\""});
     expect_unsupported("LightSource \"infinite\" \"point3 portal\" [ 0 0 0 1 0 0 1 1 0 0 1 0 ]", {"portal"});
 }
 
@@ -91,8 +126,11 @@ TEST(SceneMeaning, SeveralErrorsAreToldTogether) {
 
 TEST(SceneMeaning, FilmsAndCameras) {
     const auto errors = [](const std::string& text) { return build_text(text + "\nWorldBegin\n").all_errors(); };
-    EXPECT_NE(errors("Film \"rgb\" \"integer xresolution\" 0").find("test.pbrt:1:34: error: \"xresolution\" is 0; must be 1 to 32768"), std::string::npos);
-    EXPECT_NE(errors("Film \"rgb\" \"float cropwindow\" [ 0.5 0.5 0 1 ]").find("not a part of the 1280x720 picture"), std::string::npos);
+    EXPECT_NE(errors("Film \"rgb\" \"integer xresolution\" 0")
+                  .find("test.pbrt:1:34: error: \"xresolution\" is 0; must be 1 to 32768"),
+              std::string::npos);
+    EXPECT_NE(errors("Film \"rgb\" \"float cropwindow\" [ 0.5 0.5 0 1 ]").find("not a part of the 1280x720 picture"),
+              std::string::npos);
     EXPECT_NE(errors("Camera \"realistic\"").find("unknown camera \"realistic\""), std::string::npos);
     EXPECT_NE(errors("Camera \"perspective\" \"float fov\" 180").find("must be above 0 to 179.9"), std::string::npos);
     EXPECT_NE(errors("Sampler \"random\"").find("unknown sampler \"random\""), std::string::npos);

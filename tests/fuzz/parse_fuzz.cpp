@@ -45,7 +45,6 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     ask_for_everything(scene.camera.parameters, diagnostics);
     try {
         diagnostics.throw_if_errors();
-    } catch (const InputError&) {
-    }
+    } catch (const InputError&) {}
     return 0;
 }

@@ -14,11 +14,11 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         const size_t vertices = mesh.positions.size() / 3;
         assert(mesh.normals.empty() || mesh.normals.size() == 3 * vertices);
         assert(mesh.uvs.empty() || mesh.uvs.size() == 2 * vertices);
-        assert(mesh.face_indices.empty() || mesh.face_indices.size() == mesh.triangles.size() / 3 + mesh.quads.size() / 4);
+        assert(mesh.face_indices.empty() ||
+               mesh.face_indices.size() == mesh.triangles.size() / 3 + mesh.quads.size() / 4);
         for (const uint32_t index : mesh.triangles) assert(index < vertices);
         for (const uint32_t index : mesh.quads) assert(index < vertices);
         for (const float value : mesh.positions) assert(std::isfinite(value));
-    } catch (const InputError&) {
-    }
+    } catch (const InputError&) {}
     return 0;
 }

@@ -14,7 +14,8 @@ using glm::dvec3;
 using glm::vec3;
 using glm::vec4;
 
-std::vector<vec4> run(Device& device, const Scene& scene, glm::uvec4 what, const std::vector<vec4>& inputs, uint32_t count, size_t results) {
+std::vector<vec4> run(Device& device, const Scene& scene, glm::uvec4 what, const std::vector<vec4>& inputs,
+                      uint32_t count, size_t results) {
     const BufferHandle what_buffer = upload(device, std::vector{what}, "what");
     const BufferHandle in = upload(device, inputs, "inputs");
     const BufferHandle out = device.create_buffer(count * results * sizeof(vec4), "results");
@@ -68,7 +69,8 @@ TEST(Camera, PixelFiltersAreSampled) {
             constexpr int kGrid = 1000;
             for (int y = 0; y < kGrid; ++y) {
                 for (int x = 0; x < kGrid; ++x) {
-                    const double value = f.x(f.rx * (2 * (x + 0.5) / kGrid - 1)) * f.y(f.ry * (2 * (y + 0.5) / kGrid - 1));
+                    const double value =
+                        f.x(f.rx * (2 * (x + 0.5) / kGrid - 1)) * f.y(f.ry * (2 * (y + 0.5) / kGrid - 1));
                     absolute += std::abs(value);
                     integral += value;
                 }
@@ -83,7 +85,8 @@ TEST(Camera, PixelFiltersAreSampled) {
                 return [&, distortion](const std::vector<vec4>& points) {
                     std::vector<double> values;
                     for (const vec4& p : points)
-                        values.push_back(std::abs(f.x(p.x) * f.y(p.y)) / absolute * (1 + distortion * std::sin(7 * p.x / f.rx)));
+                        values.push_back(std::abs(f.x(p.x) * f.y(p.y)) / absolute *
+                                         (1 + distortion * std::sin(7 * p.x / f.rx)));
                     return values;
                 };
             };
@@ -126,7 +129,8 @@ TEST(Camera, RaysGoThroughTheirPixels) {
     for (const std::string& backend : usable_backends()) {
         SCOPED_TRACE(backend);
         const auto device = create_device(backend);
-        const std::vector<vec4> inputs = {{100, 50, 0.3f, 0.4f}, {0, 0, 0.1f, 0.9f}, {200, 100, 0.5f, 0.5f}, {150, 20, 0.7f, 0.2f}};
+        const std::vector<vec4> inputs = {
+            {100, 50, 0.3f, 0.4f}, {0, 0, 0.1f, 0.9f}, {200, 100, 0.5f, 0.5f}, {150, 20, 0.7f, 0.2f}};
         for (const uint32_t kind : {kernel::CAMERA_PERSPECTIVE, kernel::CAMERA_ORTHOGRAPHIC}) {
             TestScene scene;
             scene.scene.record.camera = camera(kind);
@@ -154,7 +158,8 @@ TEST(Camera, LensRaysMeetInThePlaneOfFocus) {
             scene.scene.record.camera = camera(kind);
             scene.scene.record.camera.lens = vec4(kRadius, kFocus, 0, 1);
             std::vector<vec4> inputs;
-            for (int i = 0; i < 400; ++i) inputs.emplace_back(130, 70, (float(i % 20) + 0.5f) / 20, (float(i) / 20 + 0.5f) / 20.5f);
+            for (int i = 0; i < 400; ++i)
+                inputs.emplace_back(130, 70, (float(i % 20) + 0.5f) / 20, (float(i) / 20 + 0.5f) / 20.5f);
             const auto rays = run(*device, scene.finish(), {1, 0, 0, 0}, inputs, uint32_t(inputs.size()), 2);
             const bool perspective = kind == kernel::CAMERA_PERSPECTIVE;
             const double x = -2 + 130 * 0.02, y = 1 - 70 * 0.02, scale = perspective ? kFocus : 1;

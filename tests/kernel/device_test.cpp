@@ -41,12 +41,14 @@ TEST(Device, BuffersKeepWhatIsUploaded) {
         for (const bool staging : {false, true}) {
             if (staging && backend != "vulkan") continue;
             const auto device = create_device(backend, staging ? with({{"staging", "on"}}) : DeviceOptions());
-            std::vector<uint32_t> data(5'000'003), back(data.size());  // more than one piece of staging, and no round number
+            std::vector<uint32_t> data(5'000'003),
+                back(data.size());  // more than one piece of staging, and no round number
             std::iota(data.begin(), data.end(), 7u);
             const auto buffer = device->create_buffer(data.size() * 4, "data");
             EXPECT_EQ(buffer->size(), data.size() * 4);
             buffer->download(back.data(), buffer->size());
-            EXPECT_TRUE(std::all_of(back.begin(), back.end(), [](uint32_t x) { return x == 0; })) << "new buffers are zero";
+            EXPECT_TRUE(std::all_of(back.begin(), back.end(), [](uint32_t x) { return x == 0; }))
+                << "new buffers are zero";
             buffer->upload(data.data(), buffer->size());
             buffer->download(back.data(), buffer->size());
             EXPECT_EQ(back, data);
@@ -75,14 +77,16 @@ TEST(Device, RunsEveryIndexOfARangeOnce) {
         const auto kernel = device->compile("kernel/device_square.kernel.h", 0);
         const BufferHandle buffers[] = {in, out, counter};
         uint32_t expected = 0;
-        for (const auto& [begin, count] : {std::pair{0u, 1u}, {17u, 1000u}, {1017u, 250'000u}, {299'999u, 1u}, {5u, 0u}}) {
+        for (const auto& [begin, count] :
+             {std::pair{0u, 1u}, {17u, 1000u}, {1017u, 250'000u}, {299'999u, 1u}, {5u, 0u}}) {
             out->fill_zero();
             device->run(*kernel, nullptr, buffers, begin, count);
             expected += count;
             out->download(results.data(), kSize * 4);
             for (uint32_t i = 0; i < kSize; ++i) {
                 const bool inside = i >= begin && i < begin + count;
-                ASSERT_EQ(results[i], inside ? inputs[i] * inputs[i] + float(i) : 0.0f) << "index " << i << " of [" << begin << ", +" << count << ")";
+                ASSERT_EQ(results[i], inside ? inputs[i] * inputs[i] + float(i) : 0.0f)
+                    << "index " << i << " of [" << begin << ", +" << count << ")";
             }
         }
         uint32_t counted = 0;
@@ -149,7 +153,8 @@ class ShaderCacheTest : public testing::Test {
  protected:
     void SetUp() override {
         if (!has_vulkan()) GTEST_SKIP() << "no Vulkan device";
-        folder_ = std::filesystem::path(testing::TempDir()) / ("lampyris-shader-cache-test-" + std::to_string(getpid()));
+        folder_ =
+            std::filesystem::path(testing::TempDir()) / ("lampyris-shader-cache-test-" + std::to_string(getpid()));
         std::filesystem::remove_all(folder_);
     }
     void TearDown() override { std::filesystem::remove_all(folder_); }

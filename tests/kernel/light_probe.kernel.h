@@ -1,9 +1,11 @@
 // Asks lights: samples them from a point, and tells with which density a direction from a point would have been sampled.
 #include "core/kernel/scene.h"
 
-CONST uint PROBE_SAMPLE = 0u;  // results[2 i ...]: wi, pdf (0: none found); (radiance.x, distance, light_pdf of what wi meets first, its distance)
-CONST uint PROBE_PDF = 1u;     // inputs[i]: direction; results[2 i ...]: radiance of what it meets first, pdf summed over all
-                               // that it meets; (distance, number of hits, pdf of the first, -)
+CONST uint PROBE_SAMPLE =
+    0u;  // results[2 i ...]: wi, pdf (0: none found); (radiance.x, distance, light_pdf of what wi meets first, its distance)
+CONST uint PROBE_PDF =
+    1u;  // inputs[i]: direction; results[2 i ...]: radiance of what it meets first, pdf summed over all
+         // that it meets; (distance, number of hits, pdf of the first, -)
 
 struct LightProbe {
     uvec4 what;  // operation, seed, light, -
@@ -37,7 +39,8 @@ FN bool meet_light(uint light, vec3 o, vec3 d, INOUT(Surface) s) {
         s.uv = vec2(b1, b2);
         return true;
     }
-    if (geometries[record.ids.x].data.x == GEOMETRY_BILINEAR) return bilinear_surface(record.ids.x, record.ids.y, o, d, s);
+    if (geometries[record.ids.x].data.x == GEOMETRY_BILINEAR)
+        return bilinear_surface(record.ids.x, record.ids.y, o, d, s);
     return quadric_surface(record.ids.x, o, d, s);
 }
 
@@ -91,5 +94,6 @@ KERNEL(light_probe) {
         }
     }
     results[2u * index] = sampling ? vec4(d, found.pdf) : vec4(radiance, pdf);
-    results[2u * index + 1u] = sampling ? vec4(found.radiance.x, found.distance, first, distance) : vec4(distance, hits, first, 0.0f);
+    results[2u * index + 1u] =
+        sampling ? vec4(found.radiance.x, found.distance, first, distance) : vec4(distance, hits, first, 0.0f);
 }

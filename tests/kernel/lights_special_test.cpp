@@ -24,7 +24,8 @@ kernel::LightRecord record(uint32_t kind, uint32_t image = kernel::NONE, uint32_
 
 // The one sample that a light at a point gives.
 LightAnswer only_sample(Device& device, TestScene& scene, vec3 ref_p) {
-    constexpr uint32_t kEffects = kernel::EFFECT_POINT_LIGHTS | kernel::EFFECT_DISTANT_LIGHTS | kernel::EFFECT_PROJECTION_LIGHTS;
+    constexpr uint32_t kEffects =
+        kernel::EFFECT_POINT_LIGHTS | kernel::EFFECT_DISTANT_LIGHTS | kernel::EFFECT_PROJECTION_LIGHTS;
     LightAsker asker(device, light_probe(device, kEffects), scene.finish());
     return asker.sample(ref_p, 1)[0];
 }
@@ -89,12 +90,14 @@ TEST(Lights, ProjectionsShowThePictureUpright) {
         vec3 direction;  // in light space
         float expected;
     };
-    const std::vector<Place> places = {{{-0.2f, 0.1f, 1}, 1}, {{0.2f, 0.1f, 1}, 2}, {{-0.2f, -0.1f, 1}, 3}, {{0.2f, -0.1f, 1}, 4},
-                                       {{0.55f, 0.1f, 1}, 0}, {{0.2f, -0.3f, 1}, 0}, {{0.2f, 0.1f, -1}, 0}, {{0.4f, 0.2f, 2}, 2}};
+    const std::vector<Place> places = {{{-0.2f, 0.1f, 1}, 1}, {{0.2f, 0.1f, 1}, 2},  {{-0.2f, -0.1f, 1}, 3},
+                                       {{0.2f, -0.1f, 1}, 4}, {{0.55f, 0.1f, 1}, 0}, {{0.2f, -0.3f, 1}, 0},
+                                       {{0.2f, 0.1f, -1}, 0}, {{0.4f, 0.2f, 2}, 2}};
     for (const std::string& backend : usable_backends()) {
         SCOPED_TRACE(backend);
         const auto device = create_device(backend);
-        const dmat4 to_world = glm::rotate(glm::translate(dmat4(1.0), dvec3(1, 2, 3)), 1.1, glm::normalize(dvec3(1, 1, 0)));
+        const dmat4 to_world =
+            glm::rotate(glm::translate(dmat4(1.0), dvec3(1, 2, 3)), 1.1, glm::normalize(dvec3(1, 1, 0)));
         for (const Place& place : places) {
             SCOPED_TRACE(place.expected);
             TestScene scene;
@@ -122,8 +125,9 @@ TEST(Lights, GoniometricImagesHaveTheirPoleUp) {
         int x, y;
     };
     // (d.x, d.z, d.y) near the pole is the square's middle, x to the right, the image's y downwards along the map's v.
-    const std::vector<Place> places = {{{0.1f, 1, 0.1f}, 2, 2}, {{-0.1f, 1, 0.1f}, 1, 2}, {{0.1f, 1, -0.1f}, 2, 1}, {{-0.1f, 1, -0.1f}, 1, 1},
-                                       {{0.1f, -1, 0.1f}, 3, 3}, {{-0.1f, -1, 0.1f}, 0, 3}, {{0.1f, -1, -0.1f}, 3, 0}, {{-0.1f, -1, -0.1f}, 0, 0}};
+    const std::vector<Place> places = {{{0.1f, 1, 0.1f}, 2, 2},   {{-0.1f, 1, 0.1f}, 1, 2},  {{0.1f, 1, -0.1f}, 2, 1},
+                                       {{-0.1f, 1, -0.1f}, 1, 1}, {{0.1f, -1, 0.1f}, 3, 3},  {{-0.1f, -1, 0.1f}, 0, 3},
+                                       {{0.1f, -1, -0.1f}, 3, 0}, {{-0.1f, -1, -0.1f}, 0, 0}};
     for (const std::string& backend : usable_backends()) {
         SCOPED_TRACE(backend);
         const auto device = create_device(backend);
@@ -147,15 +151,17 @@ TEST(Lights, ManyLightsAddUp) {
         auto environment = record(kernel::LIGHT_INFINITE);
         scene.add_light(environment, vec3(0.25f), 5);
         scene.scene.record.lights.y = 1;
-        scene.add_area_light(scene.add_quadric(kernel::GEOMETRY_DISK, {2, 1, 0, float(2 * kPi)}), vec3(3), kernel::LIGHT_TWO_SIDED);
+        scene.add_area_light(scene.add_quadric(kernel::GEOMETRY_DISK, {2, 1, 0, float(2 * kPi)}), vec3(3),
+                             kernel::LIGHT_TWO_SIDED);
         auto point = record(kernel::LIGHT_POINT);
         point.v0 = vec4(0, 0, 2, 0);
         scene.add_light(point, vec3(1), 0.1f);
         auto dark = record(kernel::LIGHT_POINT);
         scene.add_light(dark, vec3(1), 0.0f);  // no power: never chosen
         LightAsker asker(*device,
-                         light_probe(*device, kernel::EFFECT_ENVIRONMENT | kernel::EFFECT_AREA_LIGHTS | kernel::EFFECT_QUADRIC_LIGHTS |
-                                                  kernel::EFFECT_QUADRICS | kernel::EFFECT_POINT_LIGHTS),
+                         light_probe(*device, kernel::EFFECT_ENVIRONMENT | kernel::EFFECT_AREA_LIGHTS |
+                                                  kernel::EFFECT_QUADRIC_LIGHTS | kernel::EFFECT_QUADRICS |
+                                                  kernel::EFFECT_POINT_LIGHTS),
                          scene.finish());
         float sum = 0;
         for (const auto& light : scene.scene.lights) sum += light.emission.w;
@@ -194,10 +200,11 @@ TEST(Lights, EmissionHasTexturesAndMasks) {
         scene.scene.geometries[patch].alpha.x = 0.5f;
         scene.add_area_light(patch, vec3(0.5f), kernel::LIGHT_TWO_SIDED);
         scene.scene.lights[0].data.z = 0;
-        LightAsker asker(*device,
-                         light_probe(*device, kernel::EFFECT_AREA_LIGHTS | kernel::EFFECT_QUADRIC_LIGHTS | kernel::EFFECT_BILINEAR |
-                                                  kernel::EFFECT_LIGHT_TEXTURES | kernel::EFFECT_IMAGES | kernel::EFFECT_ALPHA),
-                         scene.finish());
+        LightAsker asker(
+            *device,
+            light_probe(*device, kernel::EFFECT_AREA_LIGHTS | kernel::EFFECT_QUADRIC_LIGHTS | kernel::EFFECT_BILINEAR |
+                                     kernel::EFFECT_LIGHT_TEXTURES | kernel::EFFECT_IMAGES | kernel::EFFECT_ALPHA),
+            scene.finish());
         Mean mean;
         for (const LightAnswer& s : asker.sample(vec3(0), 100000, 5)) {
             if (s.pdf > 0) {
@@ -221,20 +228,24 @@ TEST(Lights, EmissionHasTexturesAndMasks) {
 TEST(Lights, ExtremeSizesStayFinite) {
     for (const std::string& backend : usable_backends()) {
         const auto device = create_device(backend);
-        const KernelHandle probe = light_probe(*device, kernel::EFFECT_QUADRICS | kernel::EFFECT_BILINEAR | kernel::EFFECT_AREA_LIGHTS |
-                                                            kernel::EFFECT_QUADRIC_LIGHTS);
+        const KernelHandle probe = light_probe(*device, kernel::EFFECT_QUADRICS | kernel::EFFECT_BILINEAR |
+                                                            kernel::EFFECT_AREA_LIGHTS | kernel::EFFECT_QUADRIC_LIGHTS);
         for (const double distance : {1e-3, 1.0, 1e6}) {
             for (const double ratio : {1e-4, 1.0, 1e3}) {
                 for (int kind = 0; kind < 4; ++kind) {
-                    SCOPED_TRACE(::testing::Message() << backend << " distance " << distance << " ratio " << ratio << " kind " << kind);
+                    SCOPED_TRACE(::testing::Message()
+                                 << backend << " distance " << distance << " ratio " << ratio << " kind " << kind);
                     const auto r = float(ratio * distance);
                     const auto z = float(distance + (kind == 0 ? r : 0));
                     TestScene scene;
                     const dmat4 to = glm::translate(dmat4(1.0), dvec3(0, 0, z));
                     uint32_t geometry = 0;
-                    if (kind == 0) geometry = scene.add_quadric(kernel::GEOMETRY_SPHERE, {r, -r, r, float(2 * kPi)}, to);
+                    if (kind == 0)
+                        geometry = scene.add_quadric(kernel::GEOMETRY_SPHERE, {r, -r, r, float(2 * kPi)}, to);
                     if (kind == 1) geometry = scene.add_quadric(kernel::GEOMETRY_DISK, {0, r, 0, float(2 * kPi)}, to);
-                    if (kind == 2) geometry = scene.add_polygon<4>({vec3(-r, -r, z), vec3(r, -r, z), vec3(-r, r, z), vec3(r, r, z)});
+                    if (kind == 2)
+                        geometry =
+                            scene.add_polygon<4>({vec3(-r, -r, z), vec3(r, -r, z), vec3(-r, r, z), vec3(r, r, z)});
                     if (kind == 3) geometry = scene.add_polygon<3>({vec3(-r, -r, z), vec3(r, -r, z), vec3(0, r, z)});
                     scene.add_area_light(geometry, vec3(1), kernel::LIGHT_TWO_SIDED);
                     LightAsker asker(*device, probe, scene.finish());

@@ -26,13 +26,14 @@ constexpr double kAlpha = 1e-5;
 constexpr int kTests = 64;  // at least as many chi-squared and z tests as there are here
 constexpr uint32_t kTwoSided = kernel::LIGHT_TWO_SIDED;
 // What the probe is compiled for: shaders for everything take long to compile.
-constexpr uint32_t kAreaEffects = kernel::EFFECT_QUADRICS | kernel::EFFECT_BILINEAR | kernel::EFFECT_AREA_LIGHTS | kernel::EFFECT_QUADRIC_LIGHTS;
+constexpr uint32_t kAreaEffects =
+    kernel::EFFECT_QUADRICS | kernel::EFFECT_BILINEAR | kernel::EFFECT_AREA_LIGHTS | kernel::EFFECT_QUADRIC_LIGHTS;
 constexpr uint32_t kInfiniteEffects = kernel::EFFECT_ENVIRONMENT | kernel::EFFECT_ENVIRONMENT_IMAGE;
 
 struct Case {
     const char* name;
-    std::function<uint32_t(TestScene&)> add;       // the geometry
-    std::function<dvec3(dvec2)> point;             // its parametrisation
+    std::function<uint32_t(TestScene&)> add;  // the geometry
+    std::function<dvec3(dvec2)> point;        // its parametrisation
     vec3 ref_p;
     bool near_side_only = false;  // a whole sphere from outside: what faces away is never sampled
     bool folds = false;           // has an outline where its density has an integrable pole: quadrature is less precise
@@ -46,29 +47,41 @@ dmat4 skewed(bool mirror = false) {
 
 Case quadric(const char* name, uint32_t kind, vec4 params, const dmat4& to, vec3 ref_p, bool near_side_only = false,
              bool folds = false) {
-    return {name, [=](TestScene& scene) { return scene.add_quadric(kind, params, to); },
-            [=](dvec2 uv) { return dvec3(to * dvec4(quadric_point(kind, params, uv), 1.0)); }, ref_p, near_side_only, folds};
+    return {name,
+            [=](TestScene& scene) { return scene.add_quadric(kind, params, to); },
+            [=](dvec2 uv) { return dvec3(to * dvec4(quadric_point(kind, params, uv), 1.0)); },
+            ref_p,
+            near_side_only,
+            folds};
 }
 Case triangle(const char* name, std::array<vec3, 3> p, vec3 ref_p) {
-    return {name, [=](TestScene& scene) { return scene.add_polygon<3>(p); },
+    return {name,
+            [=](TestScene& scene) { return scene.add_polygon<3>(p); },
             [=](dvec2 uv) {  // a square with one side collapsed
                 return dvec3(p[0]) + uv.x * (dvec3(p[1] - p[0]) + uv.y * dvec3(p[2] - p[1]));
             },
-            ref_p, false, false};
+            ref_p,
+            false,
+            false};
 }
 Case patch(const char* name, std::array<vec3, 4> p, vec3 ref_p) {
-    return {name, [=](TestScene& scene) { return scene.add_polygon<4>(p); },
+    return {name,
+            [=](TestScene& scene) { return scene.add_polygon<4>(p); },
             [=](dvec2 uv) {
-                return (1 - uv.x) * ((1 - uv.y) * dvec3(p[0]) + uv.y * dvec3(p[2])) + uv.x * ((1 - uv.y) * dvec3(p[1]) + uv.y * dvec3(p[3]));
+                return (1 - uv.x) * ((1 - uv.y) * dvec3(p[0]) + uv.y * dvec3(p[2])) +
+                       uv.x * ((1 - uv.y) * dvec3(p[1]) + uv.y * dvec3(p[3]));
             },
-            ref_p, false, false};
+            ref_p,
+            false,
+            false};
 }
 
 std::vector<Case> area_lights() {
     const dmat4 up = glm::translate(dmat4(1.0), dvec3(0, 0, 3));
     using namespace kernel;
     std::vector<Case> cases = {
-        triangle("far triangle", {vec3(-0.5f, -0.5f, 3), vec3(0.5f, -0.5f, 3.2f), vec3(-0.2f, 0.5f, 2.8f)}, vec3(0.3f, 0.2f, 0)),
+        triangle("far triangle", {vec3(-0.5f, -0.5f, 3), vec3(0.5f, -0.5f, 3.2f), vec3(-0.2f, 0.5f, 2.8f)},
+                 vec3(0.3f, 0.2f, 0)),
         triangle("near triangle", {vec3(-3, -2, 1), vec3(3, -2, 1), vec3(0, 4, 1.5f)}, vec3(0.3f, 0.2f, 0)),
         triangle("triangle all around", {vec3(-9, -9, 0.2f), vec3(9, -9, 0.2f), vec3(0, 9, 0.2f)}, vec3(0)),
         triangle("wide triangle", {vec3(-3, 0.5f, 1), vec3(3, 0.5f, 1), vec3(0, 1.5f, 1.2f)}, vec3(0)),
@@ -84,7 +97,8 @@ std::vector<Case> area_lights() {
         quadric("cylinder in part, from inside", GEOMETRY_CYLINDER, {1, -1, 1, 5}, up, vec3(0.2f, 0, 3)),
         patch("rectangle", {vec3(-1, -1, 2), vec3(1, -1, 2), vec3(-1, 1, 2), vec3(1, 1, 2)}, vec3(0.5f, 0.2f, 0)),
         patch("trapezium", {vec3(-1, -1, 2), vec3(1, -1, 2), vec3(-0.2f, 1, 2), vec3(0.3f, 1, 2)}, vec3(0.5f, 0.2f, 0)),
-        patch("saddle", {vec3(-1, -1, 2.7f), vec3(1, -1, 1.5f), vec3(-1, 1, 1.3f), vec3(1, 1, 2.8f)}, vec3(2.5f, 0.2f, 1)),
+        patch("saddle", {vec3(-1, -1, 2.7f), vec3(1, -1, 1.5f), vec3(-1, 1, 1.3f), vec3(1, 1, 2.8f)},
+              vec3(2.5f, 0.2f, 1)),
     };
     cases.back().folds = true;
     return cases;
@@ -97,7 +111,8 @@ Domain cone_about(const std::vector<LightAnswer>& samples) {
     if (glm::length(mean) < 0.2 * double(samples.size())) return sphere_domain();
     mean = glm::normalize(mean);
     // Off centre, lest the light's edges run along the grid's lines.
-    mean = glm::normalize(mean + 0.2 * std::min(1.0, glm::length(mean - dvec3(samples[0].wi))) * glm::normalize(glm::cross(mean, dvec3(0.3, 0.5, 0.8))));
+    mean = glm::normalize(mean + 0.2 * std::min(1.0, glm::length(mean - dvec3(samples[0].wi))) *
+                                     glm::normalize(glm::cross(mean, dvec3(0.3, 0.5, 0.8))));
     double cosine = 1;
     for (const LightAnswer& s : samples) cosine = std::min(cosine, glm::dot(mean, glm::normalize(dvec3(s.wi))));
     if (cosine < -0.5) return sphere_domain();
@@ -117,9 +132,9 @@ Domain cone_about(const std::vector<LightAnswer>& samples) {
 }
 
 struct Fit {
-    double p;         // of the samples against the density reported,
-    double p_wrong;   // and against one that is wrong by 15 %, or 30 % with folds
-    double missing;   // what the density's integral lacks to 1
+    double p;        // of the samples against the density reported,
+    double p_wrong;  // and against one that is wrong by 15 %, or 30 % with folds
+    double missing;  // what the density's integral lacks to 1
 };
 
 Fit fit(LightAsker& asker, vec3 ref_p, bool first_hit_only = false, bool folds = false) {
@@ -137,7 +152,8 @@ Fit fit(LightAsker& asker, vec3 ref_p, bool first_hit_only = false, bool folds =
     }
     const auto density = [&](const std::vector<vec4>& directions) {
         std::vector<double> values;
-        for (const DirectionAnswer& a : asker.look(ref_p, directions)) values.push_back(first_hit_only ? a.pdf_first : a.pdf);
+        for (const DirectionAnswer& a : asker.look(ref_p, directions))
+            values.push_back(first_hit_only ? a.pdf_first : a.pdf);
         return values;
     };
     auto expected = expected_counts(domain, kCells, kCells, kSub, count, density);
@@ -148,7 +164,8 @@ Fit fit(LightAsker& asker, vec3 ref_p, bool first_hit_only = false, bool folds =
     expected.back() = 0;  // nothing may be missed
     result.p = chi_squared_test(observed.cells, expected).p;
     double sum = 0;
-    for (size_t i = 0; i < expected.size(); ++i) sum += expected[i] *= 1 + (folds ? 0.3 : 0.15) * std::sin(double(i) * 0.7);
+    for (size_t i = 0; i < expected.size(); ++i)
+        sum += expected[i] *= 1 + (folds ? 0.3 : 0.15) * std::sin(double(i) * 0.7);
     for (double& e : expected) e *= total / sum;
     result.p_wrong = chi_squared_test(observed.cells, expected).p;
     return result;
@@ -190,7 +207,7 @@ TEST(Lights, InfiniteLightsAreSampledWithTheirDensity) {
     std::vector<float> picture(8 * 8);
     for (float& texel : picture) texel = std::uniform_real_distribution<float>(0, 1)(rng);
     for (int x = 0; x < 8; ++x) picture[3 * 8 + x] = 0;  // a black row
-    picture[5 * 8 + 2] = 30;                              // a sun
+    picture[5 * 8 + 2] = 30;                             // a sun
     for (const std::string& backend : usable_backends()) {
         const auto device = create_device(backend);
         const KernelHandle probe = light_probe(*device, kInfiniteEffects);
@@ -228,15 +245,18 @@ TEST(Lights, InfiniteLightsAreSampledWithTheirDensity) {
             std::vector<vec4> grid;
             constexpr int kGrid = 400;
             for (int y = 0; y < kGrid; ++y)
-                for (int x = 0; x < kGrid; ++x) grid.push_back(domain.from_square({(x + 0.5) / kGrid, (y + 0.5) / kGrid}));
+                for (int x = 0; x < kGrid; ++x)
+                    grid.push_back(domain.from_square({(x + 0.5) / kGrid, (y + 0.5) / kGrid}));
             const auto seen = asker.look(vec3(0), grid);
             double expected = 0;
             for (size_t i = 0; i < grid.size(); ++i)
-                expected += seen[i].radiance * std::max(0.0, glm::dot(normal, dvec3(grid[i]))) * domain.jacobian / double(grid.size());
+                expected += seen[i].radiance * std::max(0.0, glm::dot(normal, dvec3(grid[i]))) * domain.jacobian /
+                            double(grid.size());
             Mean mean;
             for (const LightAnswer& s : asker.sample(vec3(0), 100000, 3))
                 mean.add(s.pdf > 0 ? s.radiance * std::max(0.0, glm::dot(normal, dvec3(s.wi))) / s.pdf : 0.0);
-            EXPECT_LT(std::abs(mean.value() - expected), normal_threshold(kAlpha / kTests) * mean.error() + 2e-3 * expected);
+            EXPECT_LT(std::abs(mean.value() - expected),
+                      normal_threshold(kAlpha / kTests) * mean.error() + 2e-3 * expected);
             EXPECT_LT(mean.error(), 0.01 * expected);
         }
     }
@@ -272,7 +292,8 @@ Mean irradiance(LightAsker& asker, vec3 ref_p, dvec3 normal, uint32_t samples = 
 }
 
 void expect_mean(const Mean& mean, double expected, double tolerance) {
-    EXPECT_LT(std::abs(mean.value() - expected), normal_threshold(kAlpha / kTests) * mean.error() + tolerance * expected)
+    EXPECT_LT(std::abs(mean.value() - expected),
+              normal_threshold(kAlpha / kTests) * mean.error() + tolerance * expected)
         << mean.value() << " +- " << mean.error() << ", expected " << expected;
     EXPECT_LT(mean.error(), 0.015 * expected + 1e-12);
 }
@@ -292,12 +313,14 @@ TEST(Lights, AreaLightsIrradiateAsQuadratureSays) {
                 const std::string name = c.name;
                 // pbrt's quadrics point outward whatever the transform does; the parametrisation turns with a mirror.
                 const bool mirrored = name == "half an ellipsoid" || name == "ellipsoid from inside";
-                const double expected = two_sided ? quadrature(c, normal, 0, one) : quadrature(c, normal, mirrored ? -1 : 1, one);
+                const double expected =
+                    two_sided ? quadrature(c, normal, 0, one) : quadrature(c, normal, mirrored ? -1 : 1, one);
                 if (!(expected > 1e-6)) {
                     EXPECT_LT(irradiance(asker, c.ref_p, normal).value(), 1e-5);
                     continue;
                 }
-                expect_mean(irradiance(asker, c.ref_p, normal), c.near_side_only ? quadrature(c, normal, 1, one) : expected, 2e-3);
+                expect_mean(irradiance(asker, c.ref_p, normal),
+                            c.near_side_only ? quadrature(c, normal, 1, one) : expected, 2e-3);
             }
         }
     }
@@ -317,7 +340,9 @@ TEST(Lights, IrradianceHasItsClosedForm) {
             LightAsker of_disk(*device, probe, disk.finish());
             expect_mean(irradiance(of_disk, vec3(0), {0, 0, 1}), 3 * kPi * r * r / (r * r + h * h), 1e-5);
             TestScene sphere;
-            sphere.add_area_light(sphere.add_quadric(kernel::GEOMETRY_SPHERE, vec4(r, -r, r, kTwoPi), glm::translate(dmat4(1.0), dvec3(0, 0, h))), vec3(3));
+            sphere.add_area_light(sphere.add_quadric(kernel::GEOMETRY_SPHERE, vec4(r, -r, r, kTwoPi),
+                                                     glm::translate(dmat4(1.0), dvec3(0, 0, h))),
+                                  vec3(3));
             LightAsker of_sphere(*device, probe, sphere.finish());
             expect_mean(irradiance(of_sphere, vec3(0), {0, 0, 1}), 3 * kPi * r * r / (h * h), 1e-5);
         }

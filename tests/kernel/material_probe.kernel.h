@@ -15,12 +15,12 @@ struct MaterialProbe {
 };
 
 struct MaterialAnswer {
-    uvec4 what;     // kind, material, flags, max_depth
+    uvec4 what;  // kind, material, flags, max_depth
     vec4 color0;
     vec4 color1;
     vec4 albedo;
-    vec4 alpha;     // of the interface, of the base
-    vec4 coat;      // eta, thickness, g, opacity of the geometry here
+    vec4 alpha;  // of the interface, of the base
+    vec4 coat;   // eta, thickness, g, opacity of the geometry here
     vec4 frame_x;
     vec4 frame_z;
 };

@@ -36,23 +36,25 @@ Probe on_plane(uint32_t material, glm::vec2 uv = {0.3f, 0.6f}, glm::vec3 dpdu = 
 
 // The displacement at + a u + b v, as a program.
 uint32_t add_ramp(TextureScene& scene, float at, float a, float b) {
-    return scene.add_program({constant_op(glm::vec3(at)), constant_op(glm::vec3(at + b)), constant_op(glm::vec3(at + a)),
-                              constant_op(glm::vec3(at + a + b)), operation(kernel::TEXTURE_BILERP)});
+    return scene.add_program({constant_op(glm::vec3(at)), constant_op(glm::vec3(at + b)),
+                              constant_op(glm::vec3(at + a)), constant_op(glm::vec3(at + a + b)),
+                              operation(kernel::TEXTURE_BILERP)});
 }
 
 glm::vec3 xyz(glm::vec4 v) { return glm::vec3(v); }
 void expect_near(glm::vec3 got, glm::dvec3 want, double tolerance) {
     for (int c = 0; c < 3; ++c)
-        EXPECT_NEAR(got[c], want[c], tolerance) << "got " << got.x << " " << got.y << " " << got.z << ", want " << want.x << " " << want.y
-                                                << " " << want.z;
+        EXPECT_NEAR(got[c], want[c], tolerance)
+            << "got " << got.x << " " << got.y << " " << got.z << ", want " << want.x << " " << want.y << " " << want.z;
 }
 
 // Every kind of material with known parameters.
 std::vector<kernel::MaterialRecord> all_materials() {
     TextureScene scene;
     for (uint32_t kind = kernel::MATERIAL_INTERFACE; kind <= kernel::MATERIAL_COATED_CONDUCTOR; ++kind)
-        for (uint32_t flags : {0u, kernel::MATERIAL_REMAP | kernel::MATERIAL_REMAP_COAT | kernel::MATERIAL_ENERGY_COMPENSATION,
-                               kernel::MATERIAL_USES_REFLECTANCE}) {
+        for (uint32_t flags :
+             {0u, kernel::MATERIAL_REMAP | kernel::MATERIAL_REMAP_COAT | kernel::MATERIAL_ENERGY_COMPENSATION,
+              kernel::MATERIAL_USES_REFLECTANCE}) {
             const bool is_conductor = kind == kernel::MATERIAL_CONDUCTOR || kind == kernel::MATERIAL_COATED_CONDUCTOR;
             if (flags == kernel::MATERIAL_USES_REFLECTANCE && !is_conductor) continue;
             kernel::MaterialRecord& m = scene.add_material(kind, flags);
@@ -92,10 +94,12 @@ TEST(Material, ParametersArriveAsTheModelsWantThem) {
             }
             if (on_metal) color0 /= 1.5, color1 /= 1.5;
             if (m.data.x == kernel::MATERIAL_DIFFUSE_TRANSMISSION) color0 *= 0.9f, color1 *= 0.9f;
-            const bool has_color = is_conductor || m.data.x == kernel::MATERIAL_DIFFUSE || m.data.x == kernel::MATERIAL_DIFFUSE_TRANSMISSION ||
+            const bool has_color = is_conductor || m.data.x == kernel::MATERIAL_DIFFUSE ||
+                                   m.data.x == kernel::MATERIAL_DIFFUSE_TRANSMISSION ||
                                    m.data.x == kernel::MATERIAL_COATED_DIFFUSE;
             if (has_color) expect_near(xyz(a.color0), color0, 1e-6);
-            if (is_conductor || m.data.x == kernel::MATERIAL_DIFFUSE_TRANSMISSION) expect_near(xyz(a.color1), color1, 1e-6);
+            if (is_conductor || m.data.x == kernel::MATERIAL_DIFFUSE_TRANSMISSION)
+                expect_near(xyz(a.color1), color1, 1e-6);
             const bool is_coat = on_metal || m.data.x == kernel::MATERIAL_COATED_DIFFUSE;
             if (is_coat) {
                 expect_near(xyz(a.albedo), glm::dvec3(m.color2), 0);
@@ -114,7 +118,8 @@ TEST(Material, ParametersArriveAsTheModelsWantThem) {
                 EXPECT_NEAR(a.alpha.w, alpha.y, 1e-6);
             }
             if (is_conductor) {
-                EXPECT_EQ(a.what.z & kernel::MATERIAL_ENERGY_COMPENSATION, m.data.y & kernel::MATERIAL_ENERGY_COMPENSATION);
+                EXPECT_EQ(a.what.z & kernel::MATERIAL_ENERGY_COMPENSATION,
+                          m.data.y & kernel::MATERIAL_ENERGY_COMPENSATION);
             }
             EXPECT_EQ(xyz(a.frame_z), glm::vec3(0, 0, 1));
         }
@@ -128,9 +133,12 @@ TEST(Material, TexturesReplaceConstants) {
     scene.scene.materials = constant;
     for (kernel::MaterialRecord m : constant) {
         m.textures = {scene.add_program({constant_op(m.color0)}), scene.add_program({constant_op(m.color1)}),
-                      scene.add_program({constant_op(m.color2)}), scene.add_program({constant_op(glm::vec3(m.floats.x))})};
-        m.textures2 = {scene.add_program({constant_op(glm::vec3(m.floats.y))}), scene.add_program({constant_op(glm::vec3(m.floats2.x))}),
-                       scene.add_program({constant_op(glm::vec3(m.floats2.y))}), scene.add_program({constant_op(glm::vec3(m.floats2.z))})};
+                      scene.add_program({constant_op(m.color2)}),
+                      scene.add_program({constant_op(glm::vec3(m.floats.x))})};
+        m.textures2 = {scene.add_program({constant_op(glm::vec3(m.floats.y))}),
+                       scene.add_program({constant_op(glm::vec3(m.floats2.x))}),
+                       scene.add_program({constant_op(glm::vec3(m.floats2.y))}),
+                       scene.add_program({constant_op(glm::vec3(m.floats2.z))})};
         m.color0 = m.color1 = m.color2 = glm::vec4(0.01f, 0.02f, 0.03f, m.color0.w);
         m.floats.x = m.floats.y = 0.9f;
         m.floats2 = glm::vec4(0.9f);
@@ -175,14 +183,18 @@ TEST(Material, MixesInProportion) {
     const auto expect_share = [&](const std::vector<Answer>& got, uint32_t material, double share) {
         double count = 0;
         for (const Answer& a : got) count += a.what.y == material;
-        EXPECT_NEAR(count / kCount, share, kDeviations * std::sqrt(share * (1 - share) / kCount)) << "material " << material;
+        EXPECT_NEAR(count / kCount, share, kDeviations * std::sqrt(share * (1 - share) / kCount))
+            << "material " << material;
     };
     for (const std::string& backend : backend_names()) {
         SCOPED_TRACE(backend);
         for (float amount : {0.0f, 0.1f, 0.5f, 0.75f, 1.0f})
             expect_share(scene.run<Answer>(backend, kFile, points(add_mix(0, 1, amount, kernel::NONE))), 1, amount);
-        expect_share(scene.run<Answer>(backend, kFile, points(add_mix(2, 0, 0.9f, scene.add_program({constant_op(glm::vec3(0.25f))})))), 0, 0.25);
-        const uint32_t outer = add_mix(add_mix(0, 1, 0.5f, kernel::NONE), add_mix(2, 3, 0.2f, kernel::NONE), 0.5f, kernel::NONE);
+        expect_share(scene.run<Answer>(backend, kFile,
+                                       points(add_mix(2, 0, 0.9f, scene.add_program({constant_op(glm::vec3(0.25f))})))),
+                     0, 0.25);
+        const uint32_t outer =
+            add_mix(add_mix(0, 1, 0.5f, kernel::NONE), add_mix(2, 3, 0.2f, kernel::NONE), 0.5f, kernel::NONE);
         const std::vector<Answer> nested = scene.run<Answer>(backend, kFile, points(outer));
         const double shares[] = {0.25, 0.25, 0.4, 0.1};
         for (uint32_t i = 0; i < 4; ++i) expect_share(nested, i, shares[i]);
@@ -217,14 +229,18 @@ TEST(Material, BumpOnAPlane) {
         float at, a, b;
         glm::vec3 dpdu, dpdv;
     };
-    const Case cases[] = {{0, 0.5f, 0, {1, 0, 0}, {0, 1, 0}},       {0.2f, 0.5f, -0.25f, {2, 0, 0}, {0, 0.5f, 0}},
-                          {0, -1, 2, {1, 1, 0}, {-1, 2, 0}},        {0.1f, 0.3f, 0.3f, {1, 0, 0}, {0.9f, 1, 0}},
-                          {0, 0, 0, {1, 0, 0}, {0, 1, 0}},          {0, 1, 0.5f, {0, 1, 0}, {1, 0, 0}}};  // the last: v runs the other way round
+    const Case cases[] = {{0, 0.5f, 0, {1, 0, 0}, {0, 1, 0}},
+                          {0.2f, 0.5f, -0.25f, {2, 0, 0}, {0, 0.5f, 0}},
+                          {0, -1, 2, {1, 1, 0}, {-1, 2, 0}},
+                          {0.1f, 0.3f, 0.3f, {1, 0, 0}, {0.9f, 1, 0}},
+                          {0, 0, 0, {1, 0, 0}, {0, 1, 0}},
+                          {0, 1, 0.5f, {0, 1, 0}, {1, 0, 0}}};  // the last: v runs the other way round
     for (const Case& c : cases) {
         kernel::MaterialRecord& m = scene.add_material(kernel::MATERIAL_DIFFUSE);
         m.data.z = add_ramp(scene, c.at, c.a, c.b);
         probes.push_back(on_plane(uint32_t(scene.scene.materials.size() - 1), {0.3f, 0.6f}, c.dpdu, c.dpdv));
-        glm::dvec3 normal = glm::normalize(glm::cross(glm::dvec3(c.dpdu) + glm::dvec3(0, 0, c.a), glm::dvec3(c.dpdv) + glm::dvec3(0, 0, c.b)));
+        glm::dvec3 normal = glm::normalize(
+            glm::cross(glm::dvec3(c.dpdu) + glm::dvec3(0, 0, c.a), glm::dvec3(c.dpdv) + glm::dvec3(0, 0, c.b)));
         want.push_back(normal.z < 0 ? -normal : normal);
     }
     for (const std::string& backend : backend_names()) {
@@ -242,7 +258,8 @@ TEST(Material, BumpOnAReversedPlane) {
     p.ng = p.ns = {0, 0, -1, 0};
     // The surface is at z = -(0.5 u + 0.25 v), seen from below.
     for (const std::string& backend : backend_names())
-        expect_near(xyz(scene.run<Answer>(backend, kFile, std::vector<Probe>{p})[0].frame_z), glm::normalize(glm::dvec3(-0.5, -0.25, -1)), 5e-4);
+        expect_near(xyz(scene.run<Answer>(backend, kFile, std::vector<Probe>{p})[0].frame_z),
+                    glm::normalize(glm::dvec3(-0.5, -0.25, -1)), 5e-4);
 }
 
 // A sphere with displacement d(phi) = c cos(phi) around its equator: the polar curve r(phi) = 1 + d has the normal r e_r - r' e_phi.
@@ -253,7 +270,8 @@ TEST(Material, BumpOnASphere) {
     TextureOp x = operation(kernel::TEXTURE_BILERP, kernel::MAPPING_PLANAR);
     x.m0 = {1, 0, 0, 0};
     scene.add_material(kernel::MATERIAL_DIFFUSE).data.z =
-        scene.add_program({constant_op(glm::vec3(0)), constant_op(glm::vec3(0)), constant_op(glm::vec3(c)), constant_op(glm::vec3(c)), x});
+        scene.add_program({constant_op(glm::vec3(0)), constant_op(glm::vec3(0)), constant_op(glm::vec3(c)),
+                           constant_op(glm::vec3(c)), x});
     std::vector<Probe> probes;
     std::vector<glm::dvec3> want;
     for (int i = 0; i < 16; ++i) {
@@ -282,7 +300,8 @@ TEST(Material, NormalMap) {
     std::vector<uint32_t> words;
     for (int p = 0; p < 4; ++p)
         for (int channel = 0; channel < 3; ++channel) words.push_back(std::bit_cast<uint32_t>(encoded[channel]));
-    const uint32_t image = scene.add_image(words, 2, 2, kernel::TEXEL_RGB32F, kernel::WRAP_REPEAT, kernel::FILTER_BILINEAR);
+    const uint32_t image =
+        scene.add_image(words, 2, 2, kernel::TEXEL_RGB32F, kernel::WRAP_REPEAT, kernel::FILTER_BILINEAR);
     scene.add_material(kernel::MATERIAL_DIFFUSE).data.w = image;
     const glm::dvec3 n = glm::normalize(2.0 * glm::dvec3(encoded) - 1.0);
     Probe turned = on_plane(0, {0.3f, 0.6f}, {0, 2, 0}, {-3, 0, 0});

@@ -27,9 +27,12 @@ std::vector<glm::vec4> make_inputs() {
         for (int c = 0; c < 4; ++c) {
             float& x = inputs[i][c];
             switch (i % 8) {
-                case 0: case 1: case 2: x = near_one(random); break;
+                case 0:
+                case 1:
+                case 2: x = near_one(random); break;
                 case 3: x = std::bit_cast<float>((bits(random) & 0x87ffffffu) | 0x38000000u); break;  // about 3e-5 to 2
-                case 4: case 5: x = std::ldexp(near_one(random), int(bits(random) % 60) - 30); break;
+                case 4:
+                case 5: x = std::ldexp(near_one(random), int(bits(random) % 60) - 30); break;
                 case 6: x = float(int(bits(random) % 17) - 8); break;
                 default: x = near_one(random) * 100.0f;
             }
@@ -79,7 +82,8 @@ TEST(MathBits, AgreeAcrossBackends) {
             for (int c = 0; c < 4; ++c) {
                 if (canonical(a[i][c]) == canonical(b[i][c])) continue;
                 if (different++ < 3) {
-                    first += fmt::format("\n  of ({:a}, {:a}, {:a}, {:a}) component {}: {:a} and {:a}", inputs[i].x, inputs[i].y, inputs[i].z, inputs[i].w, c, a[i][c], b[i][c]);
+                    first += fmt::format("\n  of ({:a}, {:a}, {:a}, {:a}) component {}: {:a} and {:a}", inputs[i].x,
+                                         inputs[i].y, inputs[i].z, inputs[i].w, c, a[i][c], b[i][c]);
                 }
             }
         }

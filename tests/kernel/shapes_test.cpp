@@ -40,10 +40,18 @@ std::vector<Named> quadrics() {
         {"sphere", kernel::GEOMETRY_SPHERE, {1.5f, -1.5f, 1.5f, 2 * kPi}, one, 0},
         {"sphere in part", kernel::GEOMETRY_SPHERE, {2.0f, -0.5f, 1.25f, 4.0f}, one, 0},
         {"ellipsoid", kernel::GEOMETRY_SPHERE, {1.0f, -1.0f, 1.0f, 2 * kPi}, skewed(), 0},
-        {"ellipsoid in part, turned round", kernel::GEOMETRY_SPHERE, {1.0f, -0.8f, 0.3f, 2.5f}, mirrored, kernel::GEOMETRY_FLIP},
+        {"ellipsoid in part, turned round",
+         kernel::GEOMETRY_SPHERE,
+         {1.0f, -0.8f, 0.3f, 2.5f},
+         mirrored,
+         kernel::GEOMETRY_FLIP},
         {"cylinder", kernel::GEOMETRY_CYLINDER, {0.8f, -1.0f, 1.5f, 2 * kPi}, one, 0},
         {"cylinder in part", kernel::GEOMETRY_CYLINDER, {1.0f, -0.5f, 0.75f, 4.5f}, mirrored, 0},
-        {"cylinder turned round", kernel::GEOMETRY_CYLINDER, {1.0f, -0.5f, 0.75f, 2 * kPi}, skewed(), kernel::GEOMETRY_FLIP},
+        {"cylinder turned round",
+         kernel::GEOMETRY_CYLINDER,
+         {1.0f, -0.5f, 0.75f, 2 * kPi},
+         skewed(),
+         kernel::GEOMETRY_FLIP},
         {"disk", kernel::GEOMETRY_DISK, {0.25f, 1.0f, 0.0f, 2 * kPi}, one, 0},
         {"ring in part", kernel::GEOMETRY_DISK, {-0.5f, 2.0f, 0.75f, 3.5f}, skewed(), kernel::GEOMETRY_FLIP},
     };
@@ -81,7 +89,8 @@ TEST(Shapes, QuadricsAreTheirParametricSurfaces) {
             SCOPED_TRACE(::testing::Message() << shape.name << " ray " << n);
             // Rays that graze the surface at its target may pass by.
             const dvec3 m_normal = glm::dmat3(glm::transpose(glm::inverse(glm::dmat3(shape.to)))) *
-                                   quadric_normal(shape.kind, dvec3(glm::inverse(shape.to) * dvec4(dvec3(rays[n].origin) + 2.0 * chord, 1.0)));
+                                   quadric_normal(shape.kind, dvec3(glm::inverse(shape.to) *
+                                                                    dvec4(dvec3(rays[n].origin) + 2.0 * chord, 1.0)));
             const double aimed_cosine = std::abs(glm::dot(glm::normalize(m_normal), glm::normalize(chord)));
             if (!a.hit) {
                 EXPECT_LT(aimed_cosine, 1e-2);
@@ -94,7 +103,8 @@ TEST(Shapes, QuadricsAreTheirParametricSurfaces) {
                 return dvec3(shape.to * dvec4(quadric_point(shape.kind, shape.params, at), 1.0));
             };
             const auto normal = [&](dvec2 at) {
-                dvec3 m = glm::transpose(glm::inverse(glm::dmat3(shape.to))) * quadric_normal(shape.kind, quadric_point(shape.kind, shape.params, at));
+                dvec3 m = glm::transpose(glm::inverse(glm::dmat3(shape.to))) *
+                          quadric_normal(shape.kind, quadric_point(shape.kind, shape.params, at));
                 return glm::normalize(m) * (shape.flags & kernel::GEOMETRY_FLIP ? -1.0 : 1.0);
             };
             EXPECT_LT(glm::length(dvec3(a.position) - point(uv)), 2e-5);
@@ -102,10 +112,13 @@ TEST(Shapes, QuadricsAreTheirParametricSurfaces) {
             const double cosine = std::max(1e-3, std::abs(glm::dot(dvec3(a.ng), glm::normalize(chord))));
             EXPECT_LT(glm::length(dvec3(a.position) - on_ray), 1e-5 / cosine);
             EXPECT_LT(glm::length(dvec3(a.ng) - normal(uv)), 1e-4);
-            const double pole = shape.kind == kernel::GEOMETRY_SPHERE || shape.kind == kernel::GEOMETRY_DISK ? 0.02 : 0.0;
+            const double pole =
+                shape.kind == kernel::GEOMETRY_SPHERE || shape.kind == kernel::GEOMETRY_DISK ? 0.02 : 0.0;
             if (uv.y < pole || uv.y > 1 - pole) continue;  // derivatives are large there
             const double h = 1e-5;
-            const auto derivative = [h](const auto& f, dvec2 at, dvec2 along) { return (f(at + h * along) - f(at - h * along)) / (2 * h); };
+            const auto derivative = [h](const auto& f, dvec2 at, dvec2 along) {
+                return (f(at + h * along) - f(at - h * along)) / (2 * h);
+            };
             const double scale = glm::length(dvec3(a.dpdu)) + glm::length(dvec3(a.dpdv));
             EXPECT_LT(glm::length(dvec3(a.dpdu) - derivative(point, uv, {1, 0})), 1e-3 * scale);
             EXPECT_LT(glm::length(dvec3(a.dpdv) - derivative(point, uv, {0, 1})), 1e-3 * scale);
@@ -130,18 +143,18 @@ TEST(Shapes, PartsThatAreMissingAreMissed) {
         float t;  // 0: missed
     };
     const std::vector<Case> cases = {
-        {{0, 0, 3}, {0, 0, -1}, bowl, 4},        // through the opening to the bottom
+        {{0, 0, 3}, {0, 0, -1}, bowl, 4},  // through the opening to the bottom
         {{0, 0, -3}, {0, 0, 1}, bowl, 2},
-        {{0.1f, -3, 0}, {0, 1, 0}, half, 0},     // y > 0 exists: the near side is missing; far side at y = sqrt(0.99)
+        {{0.1f, -3, 0}, {0, 1, 0}, half, 0},  // y > 0 exists: the near side is missing; far side at y = sqrt(0.99)
         {{0, 3, 0.1f}, {0, -1, 0}, tube, 2},
         {{0, -3, 0.1f}, {0, 1, 0}, tube, 4},
         {{0, 3, 1.1f}, {0, -1, 0}, tube, 0},
-        {{0, 0.2f, 0}, {0, 0, 1}, tube, 0},      // along the axis
+        {{0, 0.2f, 0}, {0, 0, 1}, tube, 0},  // along the axis
         {{0.2f, 0, 1}, {0, 0, -1}, ring, 0},
         {{0.7f, 0, 1}, {0, 0, -2}, ring, 0.5f},  // t counts lengths of the direction
         {{1.1f, 0, 1}, {0, 0, -1}, ring, 0},
         {{0.7f, 0, 1}, {0, 0, 1}, ring, 0},
-        {{0.7f, 0, 1}, {1, 0, 0}, ring, 0},      // parallel
+        {{0.7f, 0, 1}, {1, 0, 0}, ring, 0},  // parallel
         {{0, 0, 0}, {0, 0, 3}, whole, 1.0f / 3},
         {{0, 0, 2}, {0, 0, 1}, whole, 0},
         {{2, 0, 0}, {0, 0, 1}, whole, 0},
@@ -182,10 +195,16 @@ TEST(Shapes, PatchesAreTheirParametricSurfaces) {
     };
     const std::vector<Case> cases = {
         {"rectangle", {vec3(-1, -1, 0), vec3(1, -1, 0), vec3(-1, 1, 0), vec3(1, 1, 0)}, 0},
-        {"trapezium, turned round", {vec3(-1, -1, 0), vec3(1, -1, 0), vec3(-0.3f, 1, 0), vec3(0.4f, 1, 0)}, kernel::GEOMETRY_FLIP},
+        {"trapezium, turned round",
+         {vec3(-1, -1, 0), vec3(1, -1, 0), vec3(-0.3f, 1, 0), vec3(0.4f, 1, 0)},
+         kernel::GEOMETRY_FLIP},
         {"saddle", {vec3(-1, -1, 0.7f), vec3(1, -1, -0.5f), vec3(-1, 1, -0.8f), vec3(1, 1, 0.6f)}, 0},
-        {"warped, with uvs", {vec3(-1, -1, 0.1f), vec3(1.5f, -1, -0.4f), vec3(-1, 1, 0), vec3(1, 1, 0.3f)}, kernel::GEOMETRY_HAS_UVS},
-        {"warped, with normals", {vec3(-1, -1, 0.1f), vec3(1.5f, -1, -0.4f), vec3(-1, 1, 0), vec3(1, 1, 0.3f)}, kernel::GEOMETRY_HAS_NORMALS},
+        {"warped, with uvs",
+         {vec3(-1, -1, 0.1f), vec3(1.5f, -1, -0.4f), vec3(-1, 1, 0), vec3(1, 1, 0.3f)},
+         kernel::GEOMETRY_HAS_UVS},
+        {"warped, with normals",
+         {vec3(-1, -1, 0.1f), vec3(1.5f, -1, -0.4f), vec3(-1, 1, 0), vec3(1, 1, 0.3f)},
+         kernel::GEOMETRY_HAS_NORMALS},
         {"triangle", {vec3(-1, -1, 0), vec3(1, -1, 0), vec3(0, 1, 0), vec3(0, 1, 0)}, 0},
     };
     TestScene scene;
@@ -201,7 +220,8 @@ TEST(Shapes, PatchesAreTheirParametricSurfaces) {
     std::vector<ShapeRay> rays;
     std::vector<dvec2> aimed;
     const auto patch = [&](const Case& c, dvec2 uv) {
-        return (1 - uv.x) * ((1 - uv.y) * dvec3(c.p[0]) + uv.y * dvec3(c.p[2])) + uv.x * ((1 - uv.y) * dvec3(c.p[1]) + uv.y * dvec3(c.p[3]));
+        return (1 - uv.x) * ((1 - uv.y) * dvec3(c.p[0]) + uv.y * dvec3(c.p[2])) +
+               uv.x * ((1 - uv.y) * dvec3(c.p[1]) + uv.y * dvec3(c.p[3]));
     };
     for (uint32_t i = 0; i < cases.size(); ++i) {
         for (int k = 0; k < kRays; ++k) {
@@ -223,7 +243,8 @@ TEST(Shapes, PatchesAreTheirParametricSurfaces) {
             const ShapeAnswer& a = answers[n];
             SCOPED_TRACE(::testing::Message() << c.name << " ray " << n);
             ASSERT_TRUE(a.hit);
-            EXPECT_LT(glm::length(dvec3(a.position) - (dvec3(rays[n].origin) + double(a.t) * dvec3(rays[n].direction))), 4e-5);
+            EXPECT_LT(glm::length(dvec3(a.position) - (dvec3(rays[n].origin) + double(a.t) * dvec3(rays[n].direction))),
+                      4e-5);
             if (a.t < 0.999f) continue;  // a saddle is met before the target
             EXPECT_NEAR(a.t, 1, 1e-4);
             const dvec2 uv = aimed[n];
@@ -234,7 +255,7 @@ TEST(Shapes, PatchesAreTheirParametricSurfaces) {
             EXPECT_LT(glm::length(dvec3(a.position) - patch(c, uv)), 1e-5 / std::max(cosine, 0.02));
             if (c.flags & kernel::GEOMETRY_FLIP) normal = -normal;
             if (c.flags & kernel::GEOMETRY_HAS_NORMALS) normal = -normal;  // to the vertex normals' side
-            if (uv.y > 0.99) continue;                                    // the triangle's tip
+            if (uv.y > 0.99) continue;                                     // the triangle's tip
             EXPECT_LT(glm::length(dvec3(a.ng) - normal), 1e-3);
             if (c.flags & kernel::GEOMETRY_HAS_UVS) {
                 const auto st = [](dvec2 at) {

@@ -22,21 +22,25 @@ using Random = std::mt19937;
 float number(Random& random, float low, float high) { return std::uniform_real_distribution<float>(low, high)(random); }
 glm::vec3 color(Random& random) { return {number(random, 0, 1), number(random, 0, 1), number(random, 0, 1)}; }
 
-TexturePoint point_of(const Probe& probe) { return {glm::dvec3(probe.position), glm::dvec3(probe.normal), glm::dvec2(probe.uv)}; }
+TexturePoint point_of(const Probe& probe) {
+    return {glm::dvec3(probe.position), glm::dvec3(probe.normal), glm::dvec2(probe.uv)};
+}
 
 std::vector<Probe> random_probes(Random& random, uint32_t mode, uint32_t index, size_t count) {
     std::vector<Probe> probes(count);
     for (Probe& probe : probes) {
         probe.what = {mode, index, 0, 0};
         probe.position = {number(random, -4, 4), number(random, -4, 4), number(random, -4, 4), 0};
-        probe.normal = glm::vec4(glm::normalize(glm::dvec3(number(random, -1, 1), number(random, -1, 1), number(random, 0.1f, 1))), 0);
+        probe.normal = glm::vec4(
+            glm::normalize(glm::dvec3(number(random, -1, 1), number(random, -1, 1), number(random, 0.1f, 1))), 0);
         probe.uv = {number(random, -2, 3), number(random, -2, 3), 0, 0};
     }
     return probes;
 }
 
 // Asks every backend for one program at the probes; all must give the same bits, near the reference where it does not jump.
-void expect_program(TextureScene& scene, const TextureNode& node, Random& random, double tolerance, const ImageReference& images = {}) {
+void expect_program(TextureScene& scene, const TextureNode& node, Random& random, double tolerance,
+                    const ImageReference& images = {}) {
     const uint32_t program = scene.add_program(postfix(node));
     const std::vector<Probe> probes = random_probes(random, 0, program, kPoints);
     std::vector<glm::vec4> first;
@@ -52,7 +56,8 @@ void expect_program(TextureScene& scene, const TextureNode& node, Random& random
             if (margin < 1e-4) continue;
             ++compared;
             for (int c = 0; c < 3; ++c)
-                ASSERT_NEAR(got[i][c], want[c], tolerance * std::max(1.0, std::abs(want[c]))) << "channel " << c << " of point " << i;
+                ASSERT_NEAR(got[i][c], want[c], tolerance * std::max(1.0, std::abs(want[c])))
+                    << "channel " << c << " of point " << i;
             ASSERT_EQ(got[i].w, got[i].x) << "the value as a float";
         }
         EXPECT_GT(compared, kPoints * 9 / 10);
@@ -62,7 +67,8 @@ void expect_program(TextureScene& scene, const TextureNode& node, Random& random
 TextureNode constant_node(Random& random) { return {constant_op(color(random)), {}}; }
 
 void set_rows(TextureOp& op, Random& random) {
-    for (glm::vec4* row : {&op.m0, &op.m1, &op.m2}) *row = {number(random, -1, 1), number(random, -1, 1), number(random, -1, 1), number(random, -1, 1)};
+    for (glm::vec4* row : {&op.m0, &op.m1, &op.m2})
+        *row = {number(random, -1, 1), number(random, -1, 1), number(random, -1, 1), number(random, -1, 1)};
 }
 
 // Its value is (s, t, 0): shows a mapping as it is.
@@ -72,11 +78,16 @@ TextureNode st_node(uint32_t mapping, Random& random) {
         op.m0 = {number(random, -3, 3), number(random, -3, 3), number(random, -1, 1), number(random, -1, 1)};
     else
         set_rows(op, random);
-    return {op, {{constant_op({0, 0, 0}), {}}, {constant_op({0, 1, 0}), {}}, {constant_op({1, 0, 0}), {}}, {constant_op({1, 1, 0}), {}}}};
+    return {op,
+            {{constant_op({0, 0, 0}), {}},
+             {constant_op({0, 1, 0}), {}},
+             {constant_op({1, 0, 0}), {}},
+             {constant_op({1, 1, 0}), {}}}};
 }
 
 TEST(Texture, Mappings) {
-    for (uint32_t mapping : {kernel::MAPPING_UV, kernel::MAPPING_SPHERICAL, kernel::MAPPING_CYLINDRICAL, kernel::MAPPING_PLANAR}) {
+    for (uint32_t mapping :
+         {kernel::MAPPING_UV, kernel::MAPPING_SPHERICAL, kernel::MAPPING_CYLINDRICAL, kernel::MAPPING_PLANAR}) {
         SCOPED_TRACE(mapping);
         Random random(mapping);
         TextureScene scene;
@@ -95,7 +106,8 @@ TEST(Texture, Combinations) {
         SCOPED_TRACE(kind);
         Random random(kind);
         TextureScene scene;
-        TextureNode node{operation(kind), {st_node(kernel::MAPPING_UV, random), st_node(kernel::MAPPING_PLANAR, random)}};
+        TextureNode node{operation(kind),
+                         {st_node(kernel::MAPPING_UV, random), st_node(kernel::MAPPING_PLANAR, random)}};
         if (kind == kernel::TEXTURE_MIX) node.operands.push_back(constant_node(random));
         if (kind == kernel::TEXTURE_DIRECTION_MIX) node.op.a = glm::vec4(glm::normalize(glm::vec3(1, 2, -3)), 0);
         expect_program(scene, node, random, 2e-6);
@@ -108,7 +120,8 @@ TEST(Texture, Checkerboards) {
         Random random(dimension);
         TextureScene scene;
         const uint32_t mapping = dimension == 3 ? kernel::MAPPING_SPACE : kernel::MAPPING_UV;
-        TextureNode node{operation(kernel::TEXTURE_CHECKERBOARD, mapping), {constant_node(random), constant_node(random)}};
+        TextureNode node{operation(kernel::TEXTURE_CHECKERBOARD, mapping),
+                         {constant_node(random), constant_node(random)}};
         if (dimension == 3)
             set_rows(node.op, random);
         else
@@ -126,7 +139,8 @@ TEST(Texture, Dots) {
 }
 
 TEST(Texture, Noise) {
-    for (uint32_t kind : {kernel::TEXTURE_FBM, kernel::TEXTURE_WRINKLED, kernel::TEXTURE_WINDY, kernel::TEXTURE_MARBLE}) {
+    for (uint32_t kind :
+         {kernel::TEXTURE_FBM, kernel::TEXTURE_WRINKLED, kernel::TEXTURE_WINDY, kernel::TEXTURE_MARBLE}) {
         SCOPED_TRACE(kind);
         Random random(kind);
         TextureScene scene;
@@ -142,13 +156,15 @@ TEST(Texture, Noise) {
 TEST(Texture, RandomTrees) {
     Random random(11);
     const std::function<TextureNode(int)> tree = [&](int levels) -> TextureNode {
-        constexpr uint32_t kKinds[] = {kernel::TEXTURE_SCALE, kernel::TEXTURE_MIX, kernel::TEXTURE_DIRECTION_MIX, kernel::TEXTURE_CHECKERBOARD};
+        constexpr uint32_t kKinds[] = {kernel::TEXTURE_SCALE, kernel::TEXTURE_MIX, kernel::TEXTURE_DIRECTION_MIX,
+                                       kernel::TEXTURE_CHECKERBOARD};
         if (levels == 0) return random() % 2 ? constant_node(random) : st_node(kernel::MAPPING_UV, random);
         TextureNode node{operation(kKinds[random() % 4]), {}};
         if (node.op.data.x == kernel::TEXTURE_DIRECTION_MIX) node.op.a = {0, 0, 1, 0};
         if (node.op.data.x == kernel::TEXTURE_CHECKERBOARD) node.op.m0 = {2, 2, 0.3f, 0.3f};
         const size_t count = node.op.data.x == kernel::TEXTURE_MIX ? 3 : 2;
-        for (size_t i = 0; i < count; ++i) node.operands.push_back(i + 1 == count ? tree(levels - 1) : tree(int(random() % uint32_t(levels))));
+        for (size_t i = 0; i < count; ++i)
+            node.operands.push_back(i + 1 == count ? tree(levels - 1) : tree(int(random() % uint32_t(levels))));
         return node;
     };
     size_t deepest = 0;
@@ -167,13 +183,15 @@ TEST(Texture, RandomTrees) {
 TEST(Texture, Limits) {
     Random random(12);
     TextureNode deep = constant_node(random);
-    for (uint32_t i = 1; i < kernel::TEXTURE_STACK; ++i) deep = {operation(kernel::TEXTURE_SCALE), {{constant_op(glm::vec3(0.9f)), {}}, deep}};
+    for (uint32_t i = 1; i < kernel::TEXTURE_STACK; ++i)
+        deep = {operation(kernel::TEXTURE_SCALE), {{constant_op(glm::vec3(0.9f)), {}}, deep}};
     ASSERT_EQ(stack_depth(deep), kernel::TEXTURE_STACK);
     TextureScene scene;
     expect_program(scene, deep, random, 1e-6);
     TextureNode longest = constant_node(random);
     while (postfix(longest).size() + 2 <= kernel::TEXTURE_LENGTH)
-        longest = {operation(kernel::TEXTURE_MIX), {longest, {constant_op(color(random)), {}}, {constant_op(glm::vec3(0.01f)), {}}}};
+        longest = {operation(kernel::TEXTURE_MIX),
+                   {longest, {constant_op(color(random)), {}}, {constant_op(glm::vec3(0.01f)), {}}}};
     if (postfix(longest).size() > kernel::TEXTURE_LENGTH) longest = longest.operands[0];
     TextureScene other;
     expect_program(other, longest, random, 1e-5);
@@ -183,7 +201,8 @@ TEST(Texture, Limits) {
 TEST(Texture, EndlessProgramIsReported) {
     TextureScene scene;
     scene.scene.texture_ops.assign(2 * kernel::TEXTURE_LENGTH, operation(kernel::TEXTURE_CONSTANT));
-    for (size_t i = 1; i < scene.scene.texture_ops.size(); i += 2) scene.scene.texture_ops[i].data.x = kernel::TEXTURE_SCALE;
+    for (size_t i = 1; i < scene.scene.texture_ops.size(); i += 2)
+        scene.scene.texture_ops[i].data.x = kernel::TEXTURE_SCALE;
     scene.scene.texture_ops.insert(scene.scene.texture_ops.begin(), constant_op(glm::vec3(1)));
     for (const std::string& backend : backend_names())
         EXPECT_ANY_THROW(scene.run<glm::vec4>(backend, kFile, std::vector<Probe>(1))) << backend;
@@ -194,7 +213,8 @@ TEST(Texture, EndlessProgramIsReported) {
 uint32_t bits(float x) { return std::bit_cast<uint32_t>(x); }
 
 // Independent of the host's packing: random codes, and what they mean.
-PlainImage random_image(TextureScene& scene, Random& random, uint32_t format, uint32_t wrap, uint32_t filtering, uint32_t& index) {
+PlainImage random_image(TextureScene& scene, Random& random, uint32_t format, uint32_t wrap, uint32_t filtering,
+                        uint32_t& index) {
     PlainImage image{5, 4, wrap, filtering, {}};
     if (wrap == kernel::WRAP_OCTAHEDRAL) image.width = image.height = 6;
     const size_t count = size_t(image.width) * image.height;
@@ -214,7 +234,8 @@ PlainImage random_image(TextureScene& scene, Random& random, uint32_t format, ui
             code[c] = random() % 256;
             value[c] = meaning[code[c]];
         }
-        if (format == kernel::TEXEL_RGBA8) words.push_back(code.x | code.y << 8 | code.z << 16 | uint32_t(random()) << 24);
+        if (format == kernel::TEXEL_RGBA8)
+            words.push_back(code.x | code.y << 8 | code.z << 16 | uint32_t(random()) << 24);
         if (format == kernel::TEXEL_R8) {
             words[p / 4] |= code.x << (8 * (p % 4));
             value = glm::dvec3(value.x);
@@ -259,7 +280,9 @@ TEST_P(ImageLookups, WrapsAndFilters) {
                     double margin = 1;
                     const glm::dvec3 want = image.lookup(glm::dvec2(probes[i].uv), margin);
                     if (margin < 1e-4) continue;
-                    for (int c = 0; c < 3; ++c) ASSERT_NEAR(got[i][c], want[c], 1e-6 * 100) << "at " << probes[i].uv.x << ", " << probes[i].uv.y;
+                    for (int c = 0; c < 3; ++c)
+                        ASSERT_NEAR(got[i][c], want[c], 1e-6 * 100)
+                            << "at " << probes[i].uv.x << ", " << probes[i].uv.y;
                     ASSERT_EQ(got[i].w, 1.0f);
                 }
             }
@@ -267,14 +290,16 @@ TEST_P(ImageLookups, WrapsAndFilters) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, ImageLookups,
-                         testing::Values(kernel::TEXEL_RGBA8, kernel::TEXEL_R8, kernel::TEXEL_RGBA16F, kernel::TEXEL_RGB32F, kernel::TEXEL_R32F));
+                         testing::Values(kernel::TEXEL_RGBA8, kernel::TEXEL_R8, kernel::TEXEL_RGBA16F,
+                                         kernel::TEXEL_RGB32F, kernel::TEXEL_R32F));
 
 // All finite half floats, decoded exactly.
 TEST(Image, HalfFloats) {
     TextureScene scene;
     std::vector<uint32_t> words;
     for (uint32_t code = 0; code < 65536; ++code) words.insert(words.end(), {code | code << 16, code});
-    const uint32_t image = scene.add_image(words, 256, 256, kernel::TEXEL_RGBA16F, kernel::WRAP_CLAMP, kernel::FILTER_POINT);
+    const uint32_t image =
+        scene.add_image(words, 256, 256, kernel::TEXEL_RGBA16F, kernel::WRAP_CLAMP, kernel::FILTER_POINT);
     std::vector<Probe> probes(65536);
     for (uint32_t code = 0; code < 65536; ++code) {
         probes[code].what = {1, image, 0, 0};
@@ -285,8 +310,10 @@ TEST(Image, HalfFloats) {
         for (uint32_t code = 0; code < 65536; ++code) {
             const int exponent = int(code >> 10 & 31), fraction = int(code & 1023);
             if (exponent == 31) continue;  // infinities and NaN are not stored
-            const double magnitude = exponent == 0 ? std::ldexp(fraction, -24) : std::ldexp(1024 + fraction, exponent - 25);
-            for (int c = 0; c < 3; ++c) ASSERT_EQ(got[code][c], float(code >> 15 ? -magnitude : magnitude)) << backend << ", " << code;
+            const double magnitude =
+                exponent == 0 ? std::ldexp(fraction, -24) : std::ldexp(1024 + fraction, exponent - 25);
+            for (int c = 0; c < 3; ++c)
+                ASSERT_EQ(got[code][c], float(code >> 15 ? -magnitude : magnitude)) << backend << ", " << code;
         }
     }
 }
@@ -297,22 +324,26 @@ TEST(Image, InPrograms) {
         Random random(23 + invert);
         TextureScene scene;
         uint32_t index = 0;
-        const PlainImage image = random_image(scene, random, kernel::TEXEL_RGBA8, kernel::WRAP_REPEAT, kernel::FILTER_BILINEAR, index);
+        const PlainImage image =
+            random_image(scene, random, kernel::TEXEL_RGBA8, kernel::WRAP_REPEAT, kernel::FILTER_BILINEAR, index);
         TextureNode node{operation(kernel::TEXTURE_IMAGE, kernel::MAPPING_UV, invert), {}};
         node.op.data.z = index;
         node.op.a = {1.5f, 0.5f, 2.0f, 0};
         node.op.m0 = {2, -3, 0.25f, 0.5f};
-        expect_program(scene, node, random, 1e-5, [&](uint32_t, glm::dvec2 st, double& margin) { return image.lookup(st, margin); });
+        expect_program(scene, node, random, 1e-5,
+                       [&](uint32_t, glm::dvec2 st, double& margin) { return image.lookup(st, margin); });
     }
 }
 
 // Whatever the coordinates are, a texel of the image is read: results stay within the image's range.
 TEST(Image, WildCoordinates) {
-    const float wild[] = {NAN, INFINITY, -INFINITY, 1e38f, -1e38f, 1e10f, -1e10f, 1e-38f, -1e-38f, -1e-7f, 1.0f, 0.0f, 0.99999994f};
+    const float wild[] = {NAN,    INFINITY, -INFINITY, 1e38f, -1e38f, 1e10f,      -1e10f,
+                          1e-38f, -1e-38f,  -1e-7f,    1.0f,  0.0f,   0.99999994f};
     for (uint32_t wrap : {kernel::WRAP_REPEAT, kernel::WRAP_BLACK, kernel::WRAP_CLAMP, kernel::WRAP_OCTAHEDRAL})
         for (uint32_t filtering : {kernel::FILTER_POINT, kernel::FILTER_BILINEAR}) {
             TextureScene scene;
-            const uint32_t image = scene.add_image({bits(1.0f), bits(1.0f), bits(1.0f)}, 3, 1, kernel::TEXEL_R32F, wrap, filtering);
+            const uint32_t image =
+                scene.add_image({bits(1.0f), bits(1.0f), bits(1.0f)}, 3, 1, kernel::TEXEL_R32F, wrap, filtering);
             std::vector<Probe> probes;
             for (float s : wild)
                 for (float t : wild) probes.push_back({{1, image, 0, 0}, {}, {}, {s, t, 0, 0}});

@@ -2,7 +2,7 @@
 #include "core/kernel/scene.h"
 
 struct ProbeRay {
-    vec4 origin;     // w: t_max
+    vec4 origin;  // w: t_max
     vec4 direction;
 };
 

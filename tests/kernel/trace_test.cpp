@@ -28,8 +28,12 @@ struct Ray {
 };
 
 kernel::TransformRecord scale_and_move(vec3 scale, vec3 by) {
-    return {{scale.x, 0, 0, by.x}, {0, scale.y, 0, by.y}, {0, 0, scale.z, by.z},
-            {1 / scale.x, 0, 0, -by.x / scale.x}, {0, 1 / scale.y, 0, -by.y / scale.y}, {0, 0, 1 / scale.z, -by.z / scale.z}};
+    return {{scale.x, 0, 0, by.x},
+            {0, scale.y, 0, by.y},
+            {0, 0, scale.z, by.z},
+            {1 / scale.x, 0, 0, -by.x / scale.x},
+            {0, 1 / scale.y, 0, -by.y / scale.y},
+            {0, 0, 1 / scale.z, -by.z / scale.z}};
 }
 
 struct TraceScene {
@@ -51,7 +55,8 @@ struct TraceScene {
     }
     // Polygons of 3 or 4 corners each, one geometry.
     void add_polygons(uint32_t corners, const std::vector<vec3>& vertices) {
-        const uint32_t geometry = add(corners == 3 ? kernel::GEOMETRY_TRIANGLES : kernel::GEOMETRY_BILINEAR, uint32_t(vertices.size()) / corners);
+        const uint32_t geometry = add(corners == 3 ? kernel::GEOMETRY_TRIANGLES : kernel::GEOMETRY_BILINEAR,
+                                      uint32_t(vertices.size()) / corners);
         (void)geometry;
         for (uint32_t i = 0; i < vertices.size(); ++i) {
             scene.indices.push_back(i);
@@ -68,13 +73,15 @@ struct TraceScene {
     }
     void begin_object() { scene.sets.push_back({uint32_t(scene.geometries.size()), 0}); }
     void add_instance(uint32_t set, const kernel::TransformRecord& transform) {
-        scene.instances.push_back({transform, uvec4(scene.sets[set].first_geometry, scene.sets[set].geometry_count, 0, 0)});
+        scene.instances.push_back(
+            {transform, uvec4(scene.sets[set].first_geometry, scene.sets[set].geometry_count, 0, 0)});
         scene.instance_sets.push_back(set);
         scene.effects.ask(kernel::EFFECT_INSTANCES, "test");
     }
     Scene& finish() {
         scene.instances[0].data = {0, scene.sets[0].geometry_count, 0, 0};
-        scene.record.counts = {uint32_t(scene.geometries.size()), uint32_t(scene.instances.size()), 0, kernel::kAllEffects};
+        scene.record.counts = {uint32_t(scene.geometries.size()), uint32_t(scene.instances.size()), 0,
+                               kernel::kAllEffects};
         scene.positions.reserve(scene.positions.size() + 8);
         scene.positions.resize(scene.positions.size() + 4);  // Embree reads past the last vertex
         return scene;
@@ -128,7 +135,8 @@ std::vector<Backend> tracers() {
         result.push_back({info.backend, {{"ray_query", "off"}}, info.backend});
         if (info.backend == "cpu-bvh2") result.back().settings.clear();
         const auto ray_query = info.features.find("ray_query");
-        if (ray_query != info.features.end() && ray_query->second == "yes") result.push_back({"vulkan", {{"ray_query", "on"}}, "vulkan with ray query"});
+        if (ray_query != info.features.end() && ray_query->second == "yes")
+            result.push_back({"vulkan", {{"ray_query", "on"}}, "vulkan with ray query"});
     }
     return result;
 }
@@ -139,7 +147,8 @@ std::vector<uvec4> trace(const Backend& backend, const Scene& scene, const std::
     const auto device = create_device(backend.name, options);
     const auto on_device = device->upload(scene);
     const auto kernel = device->compile("kernel/trace_probe.kernel.h", scene.effects.mask());
-    const auto in = device->create_buffer(rays.size() * sizeof(Ray), "rays"), out = device->create_buffer(rays.size() * sizeof(uvec4), "hits");
+    const auto in = device->create_buffer(rays.size() * sizeof(Ray), "rays"),
+               out = device->create_buffer(rays.size() * sizeof(uvec4), "hits");
     in->upload(rays.data(), in->size());
     const BufferHandle buffers[] = {in, out};
     device->run(*kernel, on_device.get(), buffers, 0, uint32_t(rays.size()));
@@ -164,7 +173,9 @@ double compare(const Scene& scene, const std::vector<Ray>& rays, double allowed 
         EXPECT_LE(occluded / n, allowed) << backend.label << ": occlusion";
         EXPECT_LE(inconsistent / n, allowed) << backend.label << ": closest hit and occlusion contradict each other";
     }
-    return double(std::count_if(expected.begin(), expected.end(), [](const uvec4& hit) { return hit.y != kernel::NONE; })) / n;
+    return double(std::count_if(expected.begin(), expected.end(),
+                                [](const uvec4& hit) { return hit.y != kernel::NONE; })) /
+           n;
 }
 
 TEST(Trace, TrianglesOfAllSizes) {
@@ -193,14 +204,18 @@ TEST(Trace, QuadricsAndPatches) {
     TraceScene s;
     s.add_polygons(3, random_triangles(random, 200, 0.1f));
     for (int i = 0; i < 8; ++i) {
-        s.add_quadric(kernel::GEOMETRY_SPHERE, {0.2f, i % 2 ? -0.1f : -0.2f, 0.2f, i % 4 == 3 ? 4.0f : 6.2831853f}, scale_and_move(vec3(1, 1, 1 + 0.1f * float(i)), random.point()));
-        s.add_quadric(kernel::GEOMETRY_DISK, {0.1f, 0.3f, i % 2 ? 0.1f : 0.0f, 6.2831853f}, scale_and_move(vec3(1), random.point()));
-        s.add_quadric(kernel::GEOMETRY_CYLINDER, {0.15f, -0.2f, 0.2f, i % 4 == 1 ? 3.0f : 6.2831853f}, scale_and_move(vec3(1, 1.2f, 1), random.point()));
+        s.add_quadric(kernel::GEOMETRY_SPHERE, {0.2f, i % 2 ? -0.1f : -0.2f, 0.2f, i % 4 == 3 ? 4.0f : 6.2831853f},
+                      scale_and_move(vec3(1, 1, 1 + 0.1f * float(i)), random.point()));
+        s.add_quadric(kernel::GEOMETRY_DISK, {0.1f, 0.3f, i % 2 ? 0.1f : 0.0f, 6.2831853f},
+                      scale_and_move(vec3(1), random.point()));
+        s.add_quadric(kernel::GEOMETRY_CYLINDER, {0.15f, -0.2f, 0.2f, i % 4 == 1 ? 3.0f : 6.2831853f},
+                      scale_and_move(vec3(1, 1.2f, 1), random.point()));
     }
     std::vector<vec3> corners;
     for (int i = 0; i < 12; ++i) {
         const vec3 p = random.point();
-        for (const vec3& q : {vec3(0, 0, 0), vec3(0.3f, 0, 0), vec3(0, 0.3f, 0), vec3(0.3f, 0.3f, 0)}) corners.push_back(p + q + 0.1f * random.point());
+        for (const vec3& q : {vec3(0, 0, 0), vec3(0.3f, 0, 0), vec3(0, 0.3f, 0), vec3(0.3f, 0.3f, 0)})
+            corners.push_back(p + q + 0.1f * random.point());
     }
     s.add_polygons(4, corners);
     const double hit = compare(s.finish(), random_rays(random, 20000));
@@ -217,7 +232,8 @@ TEST(Trace, InstancesOfEverything) {
     s.begin_object();
     s.add_polygons(3, random_triangles(random, 1, 1.5f));
     s.begin_object();  // an empty object, instanced
-    for (int i = 0; i < 60; ++i) s.add_instance(1 + uint32_t(i % 3), scale_and_move(vec3(0.2f, i % 5 ? 0.2f : -0.2f, 0.3f), random.point()));
+    for (int i = 0; i < 60; ++i)
+        s.add_instance(1 + uint32_t(i % 3), scale_and_move(vec3(0.2f, i % 5 ? 0.2f : -0.2f, 0.3f), random.point()));
     const double hit = compare(s.finish(), random_rays(random, 20000));
     EXPECT_GT(hit, 0.2);
 }
@@ -240,7 +256,8 @@ TEST(Trace, DegenerateTrianglesAreMissed) {
         vertices.insert(vertices.end(), {p, p, p, p, q, p, p, 0.5f * (p + q), q});
     }
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
-    vertices.insert(vertices.end(), {vec3(kNan, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0), vec3(kInfinity, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0)});
+    vertices.insert(vertices.end(), {vec3(kNan, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0), vec3(kInfinity, 0, 0),
+                                     vec3(1, 0, 0), vec3(0, 1, 0)});
     s.add_polygons(3, vertices);
     compare(s.finish(), random_rays(random, 10000));
 }
@@ -252,7 +269,8 @@ TEST(Trace, AxisParallelRays) {
     for (int i = 0; i < 10; ++i) {
         for (int j = 0; j < 10; ++j) {
             const float x = float(i), y = float(j), z = float((i * 7 + j * 3) % 5);
-            vertices.insert(vertices.end(), {vec3(x, y, z), vec3(x + 1, y, z), vec3(x, y + 1, z), vec3(x + 1, y, z), vec3(x + 1, y + 1, z), vec3(x, y + 1, z)});
+            vertices.insert(vertices.end(), {vec3(x, y, z), vec3(x + 1, y, z), vec3(x, y + 1, z), vec3(x + 1, y, z),
+                                             vec3(x + 1, y + 1, z), vec3(x, y + 1, z)});
         }
     }
     s.add_polygons(3, vertices);
@@ -299,7 +317,8 @@ TEST(Trace, ClosedMeshHasNoHoles) {
             };
             for (int i = 0; i < kCells; ++i) {
                 for (int j = 0; j < kCells; ++j) {
-                    vertices.insert(vertices.end(), {corner(i, j), corner(i + 1, j), corner(i, j + 1), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)});
+                    vertices.insert(vertices.end(), {corner(i, j), corner(i + 1, j), corner(i, j + 1), corner(i + 1, j),
+                                                     corner(i + 1, j + 1), corner(i, j + 1)});
                 }
             }
         }

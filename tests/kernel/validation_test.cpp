@@ -32,7 +32,8 @@ std::vector<std::map<std::string, std::string>> variants() {
 // Two triangles and an instance of them: enough for every kind of acceleration structure but boxes.
 Scene small_scene() {
     Scene scene;
-    const kernel::TransformRecord identity{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
+    const kernel::TransformRecord identity{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0},
+                                           {1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
     scene.positions = {0, 0, 1, 1, 0, 1, 0, 1, 1, 1, 1, 2, 0, 0, 0, 0};
     scene.indices = {0, 1, 2, 1, 3, 2};
     for (uint32_t g = 0; g < 2; ++g) {
@@ -55,7 +56,8 @@ TEST(Validation, LayersAreLoadedAndSeeAWrongCall) {
     const auto messages = vulkan::provoke_validation_message(*device);
     ASSERT_FALSE(messages.empty()) << "the layers said nothing to a buffer of size 0";
     EXPECT_NE(messages[0].find("VUID-VkBufferCreateInfo-size-00912"), std::string::npos) << messages[0];
-    EXPECT_TRUE(vulkan::provoke_validation_message(*create_device("vulkan")).empty()) << "validation is off unless asked for";
+    EXPECT_TRUE(vulkan::provoke_validation_message(*create_device("vulkan")).empty())
+        << "validation is off unless asked for";
 }
 
 // Device throws where a layer complains, so that not throwing is being clean.

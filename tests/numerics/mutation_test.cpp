@@ -20,8 +20,10 @@ namespace {
 
 const std::filesystem::path kCorpus = std::filesystem::path(LAMPYRIS_SOURCE_DIR) / "tests/fuzz/corpus/scene";
 
-const char* const kReplacements[] = {"0", "-1", "1e30", "1e-30", "nan", "inf", "2147483647", "-2147483648", "1e39", "1e18", "-0", "\"\"",
-                                     "\"none\"", "[", "]", "3.5", "-1e38", "4294967295", "1e-45", "\"texture\"", "[ ]", "100000", "0.5", "1"};
+const char* const kReplacements[] = {"0",          "-1",          "1e30", "1e-30",  "nan",   "inf",
+                                     "2147483647", "-2147483648", "1e39", "1e18",   "-0",    "\"\"",
+                                     "\"none\"",   "[",           "]",    "3.5",    "-1e38", "4294967295",
+                                     "1e-45",      "\"texture\"", "[ ]",  "100000", "0.5",   "1"};
 
 // Words, with strings kept whole and line ends as words of their own.
 std::vector<std::string> words_of(const std::string& text) {
@@ -45,7 +47,9 @@ std::vector<std::string> words_of(const std::string& text) {
     return words;
 }
 
-bool is_number(const std::string& word) { return !word.empty() && (word[0] == '-' || (word[0] >= '0' && word[0] <= '9')); }
+bool is_number(const std::string& word) {
+    return !word.empty() && (word[0] == '-' || (word[0] >= '0' && word[0] <= '9'));
+}
 
 std::string damaged(std::vector<std::string> words, std::mt19937& random) {
     const auto below = [&](size_t n) { return size_t(random() % n); };
@@ -76,7 +80,8 @@ bool survive(Device& device, const std::string& text, bool skip_unsupported) {
     BuildOptions options;
     options.resolution = {4, 4};
     try {
-        BuiltScene built = build_scene(parse_scene_text("m.pbrt", text, kCorpus.string(), sources, diagnostics), options, diagnostics);
+        BuiltScene built =
+            build_scene(parse_scene_text("m.pbrt", text, kCorpus.string(), sources, diagnostics), options, diagnostics);
         diagnostics.throw_if_errors();
         const IntegratorFactory& factory = integrators().require("path");
         const std::unique_ptr<Integrator> integrator = factory.create();

@@ -90,7 +90,9 @@ TEST(ShapesPrecision, HitsAreWithinAFewRoundingErrors) {
                 const Long3 o = transform(m.from0, m.from1, m.from2, Long3(ray.origin), 1) / r;
                 const Long3 d = transform(m.from0, m.from1, m.from2, Long3(ray.direction), 0) / r;
                 // The size of what o is the sum of.
-                const Long3 size = transform(glm::abs(m.from0), glm::abs(m.from1), glm::abs(m.from2), Long3(glm::abs(ray.origin)), 1) / r;
+                const Long3 size =
+                    transform(glm::abs(m.from0), glm::abs(m.from1), glm::abs(m.from2), Long3(glm::abs(ray.origin)), 1) /
+                    r;
                 const double delta = 16 * kEps * double(std::max({size.x, size.y, size.z, 1.0L}));
                 if (delta > 0.01) continue;
                 long double t = -1, cosine = 1;
@@ -114,7 +116,9 @@ TEST(ShapesPrecision, HitsAreWithinAFewRoundingErrors) {
                         const long double half = std::sqrt(discriminant / a);
                         for (const long double root : {b + half, b - half}) {
                             const long double z = o.z + root * d.z;
-                            if (kind == kernel::GEOMETRY_CYLINDER && std::abs(std::abs(z) - 1) < 8 * delta / cosine * glm::length(d) / std::sqrt(a)) unsure = true;
+                            if (kind == kernel::GEOMETRY_CYLINDER &&
+                                std::abs(std::abs(z) - 1) < 8 * delta / cosine * glm::length(d) / std::sqrt(a))
+                                unsure = true;
                             if (root > 0 && (kind == kernel::GEOMETRY_SPHERE || std::abs(z) <= 1)) t = root;
                             if (std::abs(root) * glm::length(d) < 8 * delta / cosine) unsure = true;
                         }
@@ -131,7 +135,8 @@ TEST(ShapesPrecision, HitsAreWithinAFewRoundingErrors) {
                 EXPECT_LT(error, 12) << backend << " kind " << kind << " ray " << i;
                 // The error bound holds.
                 const double bound = glm::dot(glm::abs(dvec3(answer.ng)), dvec3(answer.error));
-                EXPECT_LT(std::abs(distance_to_surface(scene, ray.geometry, answer.position)), bound) << backend << " kind " << kind << " ray " << i;
+                EXPECT_LT(std::abs(distance_to_surface(scene, ray.geometry, answer.position)), bound)
+                    << backend << " kind " << kind << " ray " << i;
                 EXPECT_LT(bound, 2 * delta * double(r) + 32 * kEps * glm::length(glm::abs(dvec3(answer.position))));
             }
             EXPECT_GT(compared, 2000);
@@ -165,8 +170,10 @@ TEST(ShapesPrecision, RaysLeaveTheSurfaceThatTheyStartFrom) {
             int outside = 0, inside = 0;
             for (size_t i = 0; i < rays.size(); ++i) {
                 if (!first[i].hit) continue;
-                SCOPED_TRACE(::testing::Message() << backend << " kind " << kind << " ray " << i << " cosine " << cosines[i] << " t " << answers[i].t_again
-                                                  << " radius " << setup.scale_of[i].radius << " translation " << setup.scale_of[i].translation);
+                SCOPED_TRACE(::testing::Message()
+                             << backend << " kind " << kind << " ray " << i << " cosine " << cosines[i] << " t "
+                             << answers[i].t_again << " radius " << setup.scale_of[i].radius << " translation "
+                             << setup.scale_of[i].translation);
                 if (kind == kernel::GEOMETRY_DISK || cosines[i] > 0) {
                     ++outside;
                     EXPECT_FALSE(answers[i].again);
@@ -195,18 +202,20 @@ TEST(ShapesPrecision, PatchesToo) {
     std::mt19937 rng(4);
     std::uniform_real_distribution<double> uniform(0, 1);
     std::vector<ShapeRay> rays;
-        for (const double radius : {1e-5, 1.0, 1e6}) {
+    for (const double radius : {1e-5, 1.0, 1e6}) {
         for (const double translation : {0.0, 10.0, 1e3}) {
             const dvec3 centre = radius * translation * random_direction(rng);
             const dvec3 x = random_direction(rng), y = glm::normalize(glm::cross(x, random_direction(rng)));
             std::array<vec3, 4> p;
-            for (int k = 0; k < 4; ++k) p[size_t(k)] = vec3(centre + radius * ((k & 1 ? 1.0 : -1.0) * x + (k & 2 ? 1.0 : -1.0) * y));
+            for (int k = 0; k < 4; ++k)
+                p[size_t(k)] = vec3(centre + radius * ((k & 1 ? 1.0 : -1.0) * x + (k & 2 ? 1.0 : -1.0) * y));
             const uint32_t geometry = scene.add_polygon<4>(p);
             for (int i = 0; i < kRays; ++i) {
-                const dvec3 target = centre + radius * ((1.8 * uniform(rng) - 0.9) * x + (1.8 * uniform(rng) - 0.9) * y);
+                const dvec3 target =
+                    centre + radius * ((1.8 * uniform(rng) - 0.9) * x + (1.8 * uniform(rng) - 0.9) * y);
                 const dvec3 origin = centre + radius * 100.0 * random_direction(rng);
                 rays.push_back({vec3(origin), vec3(target - origin), geometry});
-                }
+            }
         }
     }
     scene.finish();
@@ -218,13 +227,15 @@ TEST(ShapesPrecision, PatchesToo) {
         std::vector<ShapeRay> leaving = rays;
         int hits = 0;
         for (size_t i = 0; i < rays.size(); ++i) {
-            const double cosine = std::abs(glm::dot(glm::normalize(dvec3(rays[i].direction)), glm::normalize(dvec3(first[i].ng))));
+            const double cosine =
+                std::abs(glm::dot(glm::normalize(dvec3(rays[i].direction)), glm::normalize(dvec3(first[i].ng))));
             if (!first[i].hit || cosine < 0.02) continue;
             ++hits;
             EXPECT_NEAR(first[i].t, 1, 1e-5 / cosine);
             const double c = std::pow(10.0, -4 * uniform(rng)) * (uniform(rng) < 0.5 ? -1 : 1);
             const dvec3 n = glm::normalize(dvec3(first[i].ng));
-            leaving[i].leave = vec3(c * n + std::sqrt(1 - c * c) * glm::normalize(glm::cross(n, random_direction(rng))));
+            leaving[i].leave =
+                vec3(c * n + std::sqrt(1 - c * c) * glm::normalize(glm::cross(n, random_direction(rng))));
         }
         EXPECT_GT(hits, int(rays.size()) * 95 / 100);
         int again = 0;

@@ -77,14 +77,17 @@ class AnalyticTest : public testing::TestWithParam<std::string> {
         for (int c = 0; c < 3; ++c) {
             const Window whole = compare(expected, 0, 0, w, h, c);
             if (c == 1)
-                fmt::print("{:18} {:9} mean {:+.4f} % of the closed form (z {:+.2f}); finds a bias of {:.3f} %\n", scene_, GetParam(),
-                           100.0 * whole.relative_error, whole.z, 100.0 * kPowerLimit * whole.relative_deviation);
+                fmt::print("{:18} {:9} mean {:+.4f} % of the closed form (z {:+.2f}); finds a bias of {:.3f} %\n",
+                           scene_, GetParam(), 100.0 * whole.relative_error, whole.z,
+                           100.0 * kPowerLimit * whole.relative_deviation);
             EXPECT_LT(std::abs(whole.z), kZLimit) << scene_ << ", channel " << c << ": off by " << whole.relative_error;
-            EXPECT_LT(kPowerLimit * whole.relative_deviation, detectable) << scene_ << ", channel " << c << ": too noisy to tell";
+            EXPECT_LT(kPowerLimit * whole.relative_deviation, detectable)
+                << scene_ << ", channel " << c << ": too noisy to tell";
             for (int quarter = 0; quarter < 4; ++quarter) {
                 const int x0 = quarter % 2 * (w / 2), y0 = quarter / 2 * (h / 2);
                 const Window part = compare(expected, x0, y0, x0 + w / 2, y0 + h / 2, c);
-                EXPECT_LT(std::abs(part.z), kZLimit) << scene_ << ", channel " << c << ", quarter " << quarter << ": off by " << part.relative_error;
+                EXPECT_LT(std::abs(part.z), kZLimit)
+                    << scene_ << ", channel " << c << ", quarter " << quarter << ": off by " << part.relative_error;
             }
         }
     }
@@ -107,12 +110,15 @@ class AnalyticTest : public testing::TestWithParam<std::string> {
             }
         }
         fmt::print("{:18} {:9} without noise: largest relative difference {:.1e}\n", scene_, GetParam(), worst);
-        EXPECT_LT(worst, bound) << scene_ << ", pixel (" << worst_x << ", " << worst_y << "): " << last_.value(worst_x, worst_y, 0)
-                                << ", expected " << expected(worst_x + 0.5, worst_y + 0.5, 0);
+        EXPECT_LT(worst, bound) << scene_ << ", pixel (" << worst_x << ", " << worst_y
+                                << "): " << last_.value(worst_x, worst_y, 0) << ", expected "
+                                << expected(worst_x + 0.5, worst_y + 0.5, 0);
     }
 
     // The floor's point under a raster point of the lamp-* scenes.
-    glm::dvec3 floor_point(double x, double y) const { return {2.0 * x / last_.width - 1.0, 0.0, 1.0 - 2.0 * y / last_.height}; }
+    glm::dvec3 floor_point(double x, double y) const {
+        return {2.0 * x / last_.width - 1.0, 0.0, 1.0 - 2.0 * y / last_.height};
+    }
     // The floor's radiance for an irradiance by a light of radiance (or intensity) 1.
     Expected floor_radiance(const std::function<double(glm::dvec3)>& irradiance) const {
         return [this, irradiance](double x, double y, int c) {
@@ -179,10 +185,12 @@ double fresnel_metal(double cosine, std::complex<double> index) {
 TEST_P(AnalyticTest, PerfectMirrorReflectsWhatPbrtsBoundLeaves) {
     render("furnace-mirror", 1);
     const std::complex<double> index(1.0, 2.0 * std::sqrt(0.9999 / 0.0001));
-    expect_exact([&](double x, double y, int) {
-        const double sine = std::hypot(x - 8.0, y - 8.0) * 2.4 / 16.0 / 0.9;
-        return sine < 1.0 ? fresnel_metal(std::sqrt(1.0 - sine * sine), index) : 1.0;
-    }, 1e-5);
+    expect_exact(
+        [&](double x, double y, int) {
+            const double sine = std::hypot(x - 8.0, y - 8.0) * 2.4 / 16.0 / 0.9;
+            return sine < 1.0 ? fresnel_metal(std::sqrt(1.0 - sine * sine), index) : 1.0;
+        },
+        1e-5);
 }
 
 TEST_P(AnalyticTest, LosslessDiffuseMaterialsAreInvisibleInAFurnace) {
@@ -217,24 +225,28 @@ TEST_P(AnalyticTest, RectangleLampsFollowLambert) {
 
 TEST_P(AnalyticTest, DiskLampHasItsConfigurationFactor) {
     render("lamp-disk", 128);
-    expect_mean(floor_radiance([](glm::dvec3 p) { return kPi * disk_factor(0.5, 1.0, std::hypot(p.x - 0.2, p.z + 0.1)); }), 0.03);
+    expect_mean(
+        floor_radiance([](glm::dvec3 p) { return kPi * disk_factor(0.5, 1.0, std::hypot(p.x - 0.2, p.z + 0.1)); }),
+        0.03);
 }
 
 TEST_P(AnalyticTest, CylinderLampIsADifferenceOfDisks) {
     render("lamp-cylinder", 128);
     expect_mean(floor_radiance([](glm::dvec3 p) {
-        const double aside = std::hypot(p.x - 0.1, p.z - 0.2);
-        return kPi * (disk_factor(1.7, 0.5, aside) - disk_factor(1.7, 1.0, aside));
-    }), 0.05);
+                    const double aside = std::hypot(p.x - 0.1, p.z - 0.2);
+                    return kPi * (disk_factor(1.7, 0.5, aside) - disk_factor(1.7, 1.0, aside));
+                }),
+                0.05);
 }
 
 TEST_P(AnalyticTest, SphereLampFollowsItsSolidAngle) {
     render("lamp-sphere", 64);
     expect_mean(floor_radiance([](glm::dvec3 p) {
-        const glm::dvec3 to = glm::dvec3(0.3, 1.0, 0.2) - p;
-        const double d2 = glm::dot(to, to);
-        return kPi * 0.16 / d2 * to.y / std::sqrt(d2);
-    }), 0.03);
+                    const glm::dvec3 to = glm::dvec3(0.3, 1.0, 0.2) - p;
+                    const double d2 = glm::dot(to, to);
+                    return kPi * 0.16 / d2 * to.y / std::sqrt(d2);
+                }),
+                0.03);
 }
 
 TEST_P(AnalyticTest, SkyGivesPiTimesItsRadiance) {
@@ -250,9 +262,10 @@ TEST_P(AnalyticTest, DistantLightFollowsTheCosine) {
 TEST_P(AnalyticTest, PointLightFollowsTheInverseSquare) {
     render("lamp-point", 4);
     expect_exact(floor_radiance([](glm::dvec3 p) {
-        const glm::dvec3 to = glm::dvec3(0.3, 0.9, -0.2) - p;
-        return to.y / std::pow(glm::dot(to, to), 1.5);
-    }), 1e-4);  // the filter's width
+                     const glm::dvec3 to = glm::dvec3(0.3, 0.9, -0.2) - p;
+                     return to.y / std::pow(glm::dot(to, to), 1.5);
+                 }),
+                 1e-4);  // the filter's width
 }
 
 TEST_P(AnalyticTest, SpotLightFallsOffSmoothly) {
@@ -300,9 +313,11 @@ TEST_P(AnalyticTest, GlassTransmitsAllReflectionsToAndFro) {
 
 TEST_P(AnalyticTest, MetalPlateFollowsFresnel) {
     render("mirror", 4);
-    expect_exact([](double, double, int c) {
-        return fresnel_metal(1.0, {std::array{0.2, 1.0, 2.0}[size_t(c)], std::array{3.0, 2.0, 1.0}[size_t(c)]});
-    }, 5e-6);
+    expect_exact(
+        [](double, double, int c) {
+            return fresnel_metal(1.0, {std::array{0.2, 1.0, 2.0}[size_t(c)], std::array{3.0, 2.0, 1.0}[size_t(c)]});
+        },
+        5e-6);
 }
 
 TEST_P(AnalyticTest, ThinLensKeepsTheLight) {
@@ -331,8 +346,9 @@ TEST_P(AnalyticTest, ThinLensKeepsTheLight) {
     }
     const double expected = kPi * 0.05 * 0.05 / (16.0 * pixel * pixel);
     const double deviation = std::sqrt(sum_variance);
-    fmt::print("{:18} {:9} light kept {:+.3f} % (z {:+.2f}); middle off by {:+.3f} (z {:+.2f}, {} pixels)\n", "thin-lens", GetParam(),
-               100.0 * (sum / expected - 1.0), (sum - expected) / deviation, middle / inside, middle / std::sqrt(middle_variance), inside);
+    fmt::print("{:18} {:9} light kept {:+.3f} % (z {:+.2f}); middle off by {:+.3f} (z {:+.2f}, {} pixels)\n",
+               "thin-lens", GetParam(), 100.0 * (sum / expected - 1.0), (sum - expected) / deviation, middle / inside,
+               middle / std::sqrt(middle_variance), inside);
     EXPECT_LT(std::abs(sum - expected), kZLimit * deviation);
     EXPECT_LT(kPowerLimit * deviation / expected, 0.08);
     EXPECT_GE(inside, 12);

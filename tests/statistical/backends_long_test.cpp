@@ -17,7 +17,8 @@ TEST_P(BackendsLongTest, PixelsAreTheSameOnVulkan) {
     expect_agreement(GetParam(), "vulkan", settings, 1e-3, 0.99);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, BackendsLongTest, testing::Values("reference/diffuse", "reference/dielectric-smooth", "reference/textures"),
+INSTANTIATE_TEST_SUITE_P(Scenes, BackendsLongTest,
+                         testing::Values("reference/diffuse", "reference/dielectric-smooth", "reference/textures"),
                          [](const auto& info) { return test_name(info.param); });
 
 class LargeScenesTest : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
@@ -31,10 +32,11 @@ TEST_P(LargeScenesTest, OneSampleIsTheSame) {
     expect_agreement(scene, backend, settings, 1e-5, 0.999);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, LargeScenesTest,
-                         testing::Combine(testing::Values("cornell-box/scene", "veach-mis/scene", "veach-bidir/scene", "coffee/scene"),
-                                          testing::Values("cpu-bvh2", "vulkan")),
-                         [](const auto& info) { return test_name(std::get<0>(info.param) + "_" + std::get<1>(info.param)); });
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, LargeScenesTest,
+    testing::Combine(testing::Values("cornell-box/scene", "veach-mis/scene", "veach-bidir/scene", "coffee/scene"),
+                     testing::Values("cpu-bvh2", "vulkan")),
+    [](const auto& info) { return test_name(std::get<0>(info.param) + "_" + std::get<1>(info.param)); });
 
 }  // namespace
 }  // namespace lampyris::test

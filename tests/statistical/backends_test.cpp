@@ -24,8 +24,11 @@ TEST_P(BackendsTest, OneSampleIsTheSame) {
     expect_agreement(scene, backend, settings, 1e-5, 0.999);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, BackendsTest, testing::Combine(testing::ValuesIn(small_scenes()), testing::ValuesIn(other_backends())),
-                         [](const auto& info) { return test_name(std::get<0>(info.param) + "_" + std::get<1>(info.param)); });
+INSTANTIATE_TEST_SUITE_P(Scenes, BackendsTest,
+                         testing::Combine(testing::ValuesIn(small_scenes()), testing::ValuesIn(other_backends())),
+                         [](const auto& info) {
+                             return test_name(std::get<0>(info.param) + "_" + std::get<1>(info.param));
+                         });
 
 // Many samples: what diverges in a few of them moves the pixel a little.
 class ManySamplesTest : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
@@ -39,10 +42,11 @@ TEST_P(ManySamplesTest, PixelsAreTheSame) {
     expect_agreement(scene, backend, settings, 1e-3, 0.99);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, ManySamplesTest,
-                         testing::Combine(testing::Values("reference/diffuse", "reference/dielectric-smooth", "reference/conductor-rough"),
-                                          testing::ValuesIn(other_backends())),
-                         [](const auto& info) { return test_name(std::get<0>(info.param) + "_" + std::get<1>(info.param)); });
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, ManySamplesTest,
+    testing::Combine(testing::Values("reference/diffuse", "reference/dielectric-smooth", "reference/conductor-rough"),
+                     testing::ValuesIn(other_backends())),
+    [](const auto& info) { return test_name(std::get<0>(info.param) + "_" + std::get<1>(info.param)); });
 
 }  // namespace
 }  // namespace lampyris::test

@@ -12,7 +12,9 @@ namespace {
 
 class DeterminismTest : public testing::TestWithParam<std::string> {
  protected:
-    static Rendered render(const RenderSettings& settings) { return render_file(std::string(LAMPYRIS_SOURCE_DIR) + "/scenes/reference/thin-lens.pbrt", settings); }
+    static Rendered render(const RenderSettings& settings) {
+        return render_file(std::string(LAMPYRIS_SOURCE_DIR) + "/scenes/reference/thin-lens.pbrt", settings);
+    }
 
     // Odd sizes, so that blocks of work are cut at the edges; a number of samples that is no power of two.
     static RenderSettings settings() {
@@ -61,7 +63,9 @@ TEST_P(DeterminismTest, WindowsShowTheSamePixels) {
     ASSERT_EQ(part.height, 17);
     for (int y = 0; y < part.height; ++y)
         for (int x = 0; x < part.width; ++x)
-            ASSERT_EQ(std::memcmp(&part.pixels[size_t(y * part.width + x)], &whole.pixels[size_t((y + 3) * whole.width + x + 5)], sizeof(kernel::FilmPixel)), 0)
+            ASSERT_EQ(std::memcmp(&part.pixels[size_t(y * part.width + x)],
+                                  &whole.pixels[size_t((y + 3) * whole.width + x + 5)], sizeof(kernel::FilmPixel)),
+                      0)
                 << x << ", " << y;
 }
 

@@ -32,12 +32,15 @@ struct ReferenceCase {
 // - colour, conductor-gold: pbrt multiplies spectra, Lampyris RGB (3 % per channel).
 // - textures: pbrt filters over the pixel's footprint, Lampyris samples the texture at the point.
 const ReferenceCase kCases[] = {
-    {"diffuse", true, 0.01},           {"conductor-smooth", true, 0.01},     {"conductor-rough", true, 0.01},
-    {"dielectric-smooth", true, 0.01}, {"dielectric-rough", true, 0.01},     {"coated-diffuse", true, 0.01},
-    {"thin-dielectric", true, 0.01},   {"diffuse-transmission", true, 0.01}, {"infinite-constant", true, 0.01},
-    {"infinite-image", true, 0.01},    {"point-spot", true, 0.01},           {"distant", true, 0.01},
-    {"instances", true, 0.01},         {"thin-lens", true, 0.01},            {"orthographic", true, 0.01},
-    {"textures", false, 0.01},         {"colour", false, 0.03},              {"conductor-gold", false, 0.03},
+    {"diffuse", true, 0.01},           {"conductor-smooth", true, 0.01},
+    {"conductor-rough", true, 0.01},   {"dielectric-smooth", true, 0.01},
+    {"dielectric-rough", true, 0.01},  {"coated-diffuse", true, 0.01},
+    {"thin-dielectric", true, 0.01},   {"diffuse-transmission", true, 0.01},
+    {"infinite-constant", true, 0.01}, {"infinite-image", true, 0.01},
+    {"point-spot", true, 0.01},        {"distant", true, 0.01},
+    {"instances", true, 0.01},         {"thin-lens", true, 0.01},
+    {"orthographic", true, 0.01},      {"textures", false, 0.01},
+    {"colour", false, 0.03},           {"conductor-gold", false, 0.03},
 };
 
 double luminance_at(const Image& image, int x, int y) {
@@ -78,7 +81,8 @@ TEST_P(ReferenceTest, AgreesWithPbrt) {
         for (int x = 0; x < ours.width; ++x) {
             const double a = ours.luminance(x, y), b = luminance_at(reference, x, y), se = luminance_at(error, x, y);
             const double rounding = b * std::ldexp(1.0, -11) / std::sqrt(3.0);
-            for (BlockSum* sum : {&blocks[size_t(y / kBlock) * size_t(ours.width / kBlock) + size_t(x / kBlock)], &whole}) {
+            for (BlockSum* sum :
+                 {&blocks[size_t(y / kBlock) * size_t(ours.width / kBlock) + size_t(x / kBlock)], &whole}) {
                 sum->difference += a - b;
                 sum->ours += ours.luminance_variance(x, y);
                 sum->ours_by_reference += se * se * ours.scene_samples / settings.samples;
@@ -99,8 +103,9 @@ TEST_P(ReferenceTest, AgreesWithPbrt) {
         chi_squared += z * z;
         if (std::abs(z) > std::abs(worst)) worst = z;
     }
-    fmt::print("{:22} {:9} mean {:+.3f} % (z {:+.2f}), worst block z {:+.2f}, chi2/blocks {:.2f}\n", scene.name, backend,
-               whole.difference / reference_total * 100.0, whole.z(), worst, chi_squared / double(blocks.size()));
+    fmt::print("{:22} {:9} mean {:+.3f} % (z {:+.2f}), worst block z {:+.2f}, chi2/blocks {:.2f}\n", scene.name,
+               backend, whole.difference / reference_total * 100.0, whole.z(), worst,
+               chi_squared / double(blocks.size()));
     const double mean_error = std::sqrt(whole.variance()) / reference_total;
     for (size_t c = 0; c < 3; ++c)
         EXPECT_NEAR(mean[c] / reference_mean[c], 1.0, scene.mean_tolerance + 4.0 * mean_error) << "channel " << c;
@@ -116,9 +121,11 @@ TEST_P(ReferenceTest, AgreesWithPbrt) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, ReferenceTest, testing::Combine(testing::ValuesIn(kCases), testing::ValuesIn(usable_backends())),
+INSTANTIATE_TEST_SUITE_P(Scenes, ReferenceTest,
+                         testing::Combine(testing::ValuesIn(kCases), testing::ValuesIn(usable_backends())),
                          [](const auto& info) {
-                             std::string name = std::string(std::get<0>(info.param).name) + "_" + std::get<1>(info.param);
+                             std::string name =
+                                 std::string(std::get<0>(info.param).name) + "_" + std::get<1>(info.param);
                              for (char& c : name) c = c == '-' ? '_' : c;
                              return name;
                          });

@@ -19,9 +19,9 @@ struct SceneCase {
     const char* name;
     std::array<int, 2> resolution;
     uint32_t samples;
-    double share;             // of blocks that must agree
-    bool light_is_missing;    // blocks may be darker than the author's
-    const char* exception;    // why it is not held to 90 %
+    double share;           // of blocks that must agree
+    bool light_is_missing;  // blocks may be darker than the author's
+    const char* exception;  // why it is not held to 90 %
 };
 
 const SceneCase kScenes[] = {
@@ -78,9 +78,11 @@ TEST_P(ScenesTest, LooksLikeTheAuthorsImage) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, ScenesTest, testing::Combine(testing::ValuesIn(kScenes), testing::ValuesIn(usable_backends())),
+INSTANTIATE_TEST_SUITE_P(Scenes, ScenesTest,
+                         testing::Combine(testing::ValuesIn(kScenes), testing::ValuesIn(usable_backends())),
                          [](const auto& info) {
-                             std::string name = std::string(std::get<0>(info.param).name) + "_" + std::get<1>(info.param);
+                             std::string name =
+                                 std::string(std::get<0>(info.param).name) + "_" + std::get<1>(info.param);
                              for (char& c : name) c = c == '-' ? '_' : c;
                              return name;
                          });

@@ -34,13 +34,17 @@ Agreement agreement(const Rendered& a, const Rendered& b, double tolerance) {
     return result;
 }
 
-std::string scene_path(const std::string& name) { return std::string(LAMPYRIS_SOURCE_DIR) + "/scenes/" + name + ".pbrt"; }
+std::string scene_path(const std::string& name) {
+    return std::string(LAMPYRIS_SOURCE_DIR) + "/scenes/" + name + ".pbrt";
+}
 
 std::vector<std::string> small_scenes() {
     std::vector<std::string> names;
     for (const char* folder : {"reference", "analytic"})
-        for (const auto& entry : std::filesystem::directory_iterator(std::string(LAMPYRIS_SOURCE_DIR) + "/scenes/" + folder))
-            if (entry.path().extension() == ".pbrt") names.push_back(std::string(folder) + "/" + entry.path().stem().string());
+        for (const auto& entry :
+             std::filesystem::directory_iterator(std::string(LAMPYRIS_SOURCE_DIR) + "/scenes/" + folder))
+            if (entry.path().extension() == ".pbrt")
+                names.push_back(std::string(folder) + "/" + entry.path().stem().string());
     std::sort(names.begin(), names.end());
     return names;
 }
@@ -51,7 +55,8 @@ std::string test_name(std::string text) {
     return text;
 }
 
-Agreement expect_agreement(const std::string& scene, const std::string& other, const RenderSettings& settings, double tolerance, double least) {
+Agreement expect_agreement(const std::string& scene, const std::string& other, const RenderSettings& settings,
+                           double tolerance, double least) {
     RenderSettings s = settings;
     s.integrator = "path";
     s.backend = "cpu";
@@ -61,11 +66,12 @@ Agreement expect_agreement(const std::string& scene, const std::string& other, c
     const Agreement result = agreement(cpu, theirs, tolerance);
     std::string where;
     for (const auto& [x, y] : result.diverging) where += fmt::format(" ({}, {})", x, y);
-    fmt::print("{:32} {:9} {:5} spp: {:8.4f} % to the bit, {:8.4f} % to {:.0e}, largest {:.1e}{}{}\n", scene, other, s.samples,
-               100.0 * double(result.identical) / double(result.pixels), 100.0 * result.share(), tolerance, result.largest,
-               where.empty() ? "" : ", not:", where);
-    EXPECT_GE(result.share(), least) << scene << ": cpu and " << other << " differ at" << where
-                                     << "; lampyris render " << scene << ".pbrt --seed " << s.seed << " --replay X,Y,0 --backend ... shows one sample";
+    fmt::print("{:32} {:9} {:5} spp: {:8.4f} % to the bit, {:8.4f} % to {:.0e}, largest {:.1e}{}{}\n", scene, other,
+               s.samples, 100.0 * double(result.identical) / double(result.pixels), 100.0 * result.share(), tolerance,
+               result.largest, where.empty() ? "" : ", not:", where);
+    EXPECT_GE(result.share(), least) << scene << ": cpu and " << other << " differ at" << where << "; lampyris render "
+                                     << scene << ".pbrt --seed " << s.seed
+                                     << " --replay X,Y,0 --backend ... shows one sample";
     if (testing::Test::HasFailure()) {
         save_failure(test_name(fmt::format("backends_{}_{}_cpu", scene, other)), cpu.image);
         save_failure(test_name(fmt::format("backends_{}_{}", scene, other)), theirs.image);

@@ -11,9 +11,9 @@ namespace lampyris::test {
 
 struct Agreement {
     size_t pixels = 0;
-    size_t identical = 0;  // to the bit
-    size_t within = 0;     // identical, or each channel within the relative tolerance
-    double largest = 0.0;  // relative difference of a channel
+    size_t identical = 0;                       // to the bit
+    size_t within = 0;                          // identical, or each channel within the relative tolerance
+    double largest = 0.0;                       // relative difference of a channel
     std::vector<std::array<int, 2>> diverging;  // the pixels that are not within, the first few: for --replay
     double share() const { return double(within) / double(pixels); }
 };
@@ -28,6 +28,7 @@ std::string scene_path(const std::string& name);
 std::string test_name(std::string text);
 
 // Renders on the CPU and on `other`, prints the shares as a line of a table, and leaves images where `least` is not reached.
-Agreement expect_agreement(const std::string& scene, const std::string& other, const RenderSettings& settings, double tolerance, double least);
+Agreement expect_agreement(const std::string& scene, const std::string& other, const RenderSettings& settings,
+                           double tolerance, double least);
 
 }  // namespace lampyris::test

@@ -36,7 +36,10 @@ inline BuiltText build_text(const std::string& text, bool skip_unsupported = fal
 
 // The world part of a scene with a camera and a small film in front.
 inline BuiltText build_world(const std::string& world, bool skip_unsupported = false) {
-    return build_text("Camera \"perspective\"\nFilm \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\nWorldBegin\n" + world, skip_unsupported);
+    return build_text(
+        "Camera \"perspective\"\nFilm \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\nWorldBegin\n" +
+            world,
+        skip_unsupported);
 }
 
 }  // namespace lampyris

@@ -14,10 +14,10 @@ struct LightProbe {
 
 struct LightAnswer {
     glm::vec3 wi;
-    float pdf;        // 0: no light was found
+    float pdf;  // 0: no light was found
     float radiance;
     float distance;
-    float pdf_met;    // light_pdf of the first thing that wi meets, and
+    float pdf_met;  // light_pdf of the first thing that wi meets, and
     float distance_met;
 };
 
@@ -27,7 +27,9 @@ struct DirectionAnswer {
 };
 
 // The probe, for the effects given: compiled once, used with many scenes.
-inline KernelHandle light_probe(Device& device, uint32_t effects) { return device.compile("kernel/light_probe.kernel.h", effects); }
+inline KernelHandle light_probe(Device& device, uint32_t effects) {
+    return device.compile("kernel/light_probe.kernel.h", effects);
+}
 
 class LightAsker {
  public:
@@ -38,7 +40,8 @@ class LightAsker {
         const auto v = run({{0, seed, 0, 0}, glm::vec4(ref_p, 0)}, {glm::vec4(0)}, count);
         std::vector<LightAnswer> answers(count);
         for (uint32_t i = 0; i < count; ++i)
-            answers[i] = {glm::vec3(v[2 * i]), v[2 * i].w, v[2 * i + 1].x, v[2 * i + 1].y, v[2 * i + 1].z, v[2 * i + 1].w};
+            answers[i] = {glm::vec3(v[2 * i]), v[2 * i].w,     v[2 * i + 1].x,
+                          v[2 * i + 1].y,      v[2 * i + 1].z, v[2 * i + 1].w};
         return answers;
     }
     std::vector<DirectionAnswer> look(glm::vec3 ref_p, const std::vector<glm::vec4>& directions, uint32_t light = 0) {

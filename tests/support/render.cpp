@@ -21,7 +21,8 @@ Rendered render_description(SceneDescription description, const RenderSettings& 
     const std::unique_ptr<Integrator> integrator = factory.create();
     set_defaults(integrator->parameters(), factory.fields);
     read_parameters(integrator->parameters(), factory.fields, built.settings.integrator.parameters, diagnostics);
-    for (const auto& [key, value] : choice.settings) set_parameter(integrator->parameters(), factory.fields, key, value, name);
+    for (const auto& [key, value] : choice.settings)
+        set_parameter(integrator->parameters(), factory.fields, key, value, name);
     diagnostics.throw_if_errors();
 
     DeviceOptions device_options;
@@ -32,7 +33,8 @@ Rendered render_description(SceneDescription description, const RenderSettings& 
     Film film(*device, built.scene, built.settings.crop);
     RenderSession session(*device, built.scene, device_scene, film, {settings.samples, {}, {}});
     session.seed = settings.seed;
-    session.sampler = settings.sampler.value_or(built.settings.sampler) == "independent" ? kernel::SAMPLER_INDEPENDENT : kernel::SAMPLER_SOBOL;
+    session.sampler = settings.sampler.value_or(built.settings.sampler) == "independent" ? kernel::SAMPLER_INDEPENDENT
+                                                                                         : kernel::SAMPLER_SOBOL;
     session.max_slice = settings.slice;
     session.start_at(settings.first_pass);
     integrator->render(session);
@@ -55,7 +57,8 @@ double Rendered::luminance(int x, int y) const {
 
 double Rendered::luminance_variance(int x, int y) const {
     const int first = image.find_channel("variance.R");
-    const double deviation = 0.2126 * std::sqrt(double(value(x, y, first))) + 0.7152 * std::sqrt(double(value(x, y, first + 1))) +
+    const double deviation = 0.2126 * std::sqrt(double(value(x, y, first))) +
+                             0.7152 * std::sqrt(double(value(x, y, first + 1))) +
                              0.0722 * std::sqrt(double(value(x, y, first + 2)));
     return deviation * deviation;
 }
@@ -70,7 +73,8 @@ double Rendered::mean_luminance() const {
 Rendered render_text(const std::string& scene_text, const RenderSettings& settings, const std::string& directory) {
     auto sources = std::make_shared<Sources>();
     Diagnostics diagnostics(*sources);
-    return render_description(parse_scene_text("test.pbrt", scene_text, directory, sources, diagnostics), settings, diagnostics);
+    return render_description(parse_scene_text("test.pbrt", scene_text, directory, sources, diagnostics), settings,
+                              diagnostics);
 }
 
 Rendered render_file(const std::string& path, const RenderSettings& settings) {
@@ -97,6 +101,8 @@ std::string failure_directory() {
     return directory;
 }
 
-void save_failure(const std::string& name, const Image& image) { write_image(failure_directory() + "/" + name + ".exr", image); }
+void save_failure(const std::string& name, const Image& image) {
+    write_image(failure_directory() + "/" + name + ".exr", image);
+}
 
 }  // namespace lampyris::test

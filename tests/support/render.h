@@ -28,7 +28,7 @@ struct RenderSettings {
 };
 
 struct Rendered {
-    Image image;              // Film::image()
+    Image image;  // Film::image()
     FilmSummary summary;
     std::vector<kernel::FilmPixel> pixels;
     int width = 0, height = 0;

@@ -21,12 +21,13 @@ struct ShapeAnswer {
     float t = 0;
     glm::vec2 uv;
     glm::vec3 position, error, ng, dpdu, dpdv, dndu, dndv;
-    bool again = false;       // a ray that left the point in ShapeRay::leave found the shape again,
-    float t_again = 0;        // there
+    bool again = false;  // a ray that left the point in ShapeRay::leave found the shape again,
+    float t_again = 0;   // there
     bool before_t_max = false;
 };
 
-inline std::vector<ShapeAnswer> ask_shapes(Device& device, const DeviceSceneHandle& scene, const std::vector<ShapeRay>& rays) {
+inline std::vector<ShapeAnswer> ask_shapes(Device& device, const DeviceSceneHandle& scene,
+                                           const std::vector<ShapeRay>& rays) {
     std::vector<glm::vec4> inputs;
     for (const ShapeRay& ray : rays) {
         inputs.emplace_back(ray.origin, float(ray.geometry));
@@ -36,15 +37,18 @@ inline std::vector<ShapeAnswer> ask_shapes(Device& device, const DeviceSceneHand
     constexpr size_t kResults = 9;
     const BufferHandle in = upload(device, inputs, "rays");
     const BufferHandle out = device.create_buffer(rays.size() * kResults * sizeof(glm::vec4), "results");
-    const KernelHandle kernel = device.compile("kernel/shape_probe.kernel.h", kernel::EFFECT_QUADRICS | kernel::EFFECT_BILINEAR | kernel::EFFECT_SMOOTH_NORMALS | kernel::EFFECT_BUMP);
+    const KernelHandle kernel =
+        device.compile("kernel/shape_probe.kernel.h", kernel::EFFECT_QUADRICS | kernel::EFFECT_BILINEAR |
+                                                          kernel::EFFECT_SMOOTH_NORMALS | kernel::EFFECT_BUMP);
     const std::array<BufferHandle, 2> buffers{in, out};
     device.run(*kernel, scene.get(), buffers, 0, uint32_t(rays.size()));
     const auto v = download<glm::vec4>(out, rays.size() * kResults);
     std::vector<ShapeAnswer> answers(rays.size());
     for (size_t i = 0; i < rays.size(); ++i) {
         const glm::vec4* r = &v[kResults * i];
-        answers[i] = {r[0].x != 0, r[0].y, {r[0].z, r[0].w}, glm::vec3(r[1]), glm::vec3(r[2]), glm::vec3(r[3]), glm::vec3(r[4]),
-                      glm::vec3(r[5]), glm::vec3(r[6]), glm::vec3(r[7]), r[8].x != 0, r[8].y, r[8].z != 0};
+        answers[i] = {r[0].x != 0,     r[0].y,          {r[0].z, r[0].w}, glm::vec3(r[1]), glm::vec3(r[2]),
+                      glm::vec3(r[3]), glm::vec3(r[4]), glm::vec3(r[5]),  glm::vec3(r[6]), glm::vec3(r[7]),
+                      r[8].x != 0,     r[8].y,          r[8].z != 0};
     }
     return answers;
 }

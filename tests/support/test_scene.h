@@ -16,7 +16,9 @@ namespace lampyris::test {
 
 inline kernel::TransformRecord transform_of(const glm::dmat4& to) {
     const glm::dmat4 from = glm::inverse(to);
-    const auto row = [](const glm::dmat4& m, int i) { return glm::vec4(float(m[0][i]), float(m[1][i]), float(m[2][i]), float(m[3][i])); };
+    const auto row = [](const glm::dmat4& m, int i) {
+        return glm::vec4(float(m[0][i]), float(m[1][i]), float(m[2][i]), float(m[3][i]));
+    };
     return {row(to, 0), row(to, 1), row(to, 2), row(from, 0), row(from, 1), row(from, 2)};
 }
 
@@ -92,7 +94,8 @@ class TestScene {
     // A picture of floats, one channel, row by row from the top.
     uint32_t add_image(const std::vector<float>& values, uint32_t width, uint32_t height, uint32_t wrap) {
         kernel::ImageRecord image{};
-        image.data = {uint32_t(scene.texels.size()), width, height, kernel::TEXEL_R32F | wrap << 8 | kernel::FILTER_POINT << 16};
+        image.data = {uint32_t(scene.texels.size()), width, height,
+                      kernel::TEXEL_R32F | wrap << 8 | kernel::FILTER_POINT << 16};
         for (const float value : values) scene.texels.push_back(std::bit_cast<uint32_t>(value));
         scene.images.push_back(image);
         return uint32_t(scene.images.size() - 1);

@@ -12,8 +12,9 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 
 // Perlin 2002, "Improving Noise": the twelve edge directions in the order of the hash. The four that come twice are pbrt's choice.
-constexpr int kEdges[16][3] = {{1, 1, 0}, {-1, 1, 0}, {1, -1, 0}, {-1, -1, 0}, {1, 0, 1},  {-1, 0, 1}, {1, 0, -1},  {-1, 0, -1},
-                               {0, 1, 1}, {0, -1, 1}, {0, 1, -1}, {0, -1, -1}, {1, 1, 0}, {-1, 1, 0}, {0, 1, -1}, {0, -1, -1}};
+constexpr int kEdges[16][3] = {{1, 1, 0},  {-1, 1, 0},  {1, -1, 0}, {-1, -1, 0}, {1, 0, 1},  {-1, 0, 1},
+                               {1, 0, -1}, {-1, 0, -1}, {0, 1, 1},  {0, -1, 1},  {0, 1, -1}, {0, -1, -1},
+                               {1, 1, 0},  {-1, 1, 0},  {0, 1, -1}, {0, -1, -1}};
 
 int permuted(int64_t i) { return kNoisePermutation[((i % 256) + 256) % 256]; }
 
@@ -48,9 +49,10 @@ bool in_dot(glm::dvec2 st, double& margin) {
     const double s = std::floor(st.x + 0.5), t = std::floor(st.y + 0.5);
     // In the middle of a cell noise is a sum of eighths, exact in any precision.
     const double present = reference_noise({s + 0.5, t + 0.5, 0.5});
-    const glm::dvec2 centre(s + 0.15 * reference_noise({s + 1.5, t + 2.8, 0.5}), t + 0.15 * reference_noise({s + 4.5, t + 9.8, 0.5}));
-    margin = std::min({margin, edge_distance(st.x + 0.5), edge_distance(st.y + 0.5),
-                       std::abs(glm::distance(st, centre) - 0.35)});
+    const glm::dvec2 centre(s + 0.15 * reference_noise({s + 1.5, t + 2.8, 0.5}),
+                            t + 0.15 * reference_noise({s + 4.5, t + 9.8, 0.5}));
+    margin = std::min(
+        {margin, edge_distance(st.x + 0.5), edge_distance(st.y + 0.5), std::abs(glm::distance(st, centre) - 0.35)});
     return present > 0 && glm::distance(st, centre) < 0.35;
 }
 
@@ -95,14 +97,16 @@ glm::dvec2 reference_st(const TextureOp& op, const TexturePoint& point) {
     const uint32_t mapping = op.data.y >> 8;
     if (mapping == kernel::MAPPING_UV) return {op.m0.x * point.uv.x + op.m0.z, op.m0.y * point.uv.y + op.m0.w};
     if (mapping == kernel::MAPPING_PLANAR)
-        return {glm::dot(glm::dvec3(op.m0), point.position) + op.m0.w, glm::dot(glm::dvec3(op.m1), point.position) + op.m1.w};
+        return {glm::dot(glm::dvec3(op.m0), point.position) + op.m0.w,
+                glm::dot(glm::dvec3(op.m1), point.position) + op.m1.w};
     const glm::dvec3 p = texture_space(op, point.position);
     const double phi = std::atan2(p.y, p.x);
     if (mapping == kernel::MAPPING_CYLINDRICAL) return {(kPi + phi) / (2 * kPi), p.z};
     return {std::acos(p.z / glm::length(p)) / kPi, (phi < 0 ? phi + 2 * kPi : phi) / (2 * kPi)};
 }
 
-glm::dvec3 reference_color(const TextureNode& node, const TexturePoint& point, const ImageReference& images, double& margin) {
+glm::dvec3 reference_color(const TextureNode& node, const TexturePoint& point, const ImageReference& images,
+                           double& margin) {
     const TextureOp& op = node.op;
     std::vector<glm::dvec3> x;
     for (const TextureNode& operand : node.operands) x.push_back(reference_color(operand, point, images, margin));
@@ -113,8 +117,10 @@ glm::dvec3 reference_color(const TextureNode& node, const TexturePoint& point, c
             const glm::dvec3 value = glm::dvec3(op.a) * images(op.data.z, {st.x, 1 - st.y}, margin);
             return op.data.w ? glm::max(1.0 - value, 0.0) : value;
         }
-        case kernel::TEXTURE_FBM: return glm::dvec3(octaves(texture_space(op, point.position), op.a.x, op.data.w, false));
-        case kernel::TEXTURE_WRINKLED: return glm::dvec3(octaves(texture_space(op, point.position), op.a.x, op.data.w, true));
+        case kernel::TEXTURE_FBM:
+            return glm::dvec3(octaves(texture_space(op, point.position), op.a.x, op.data.w, false));
+        case kernel::TEXTURE_WRINKLED:
+            return glm::dvec3(octaves(texture_space(op, point.position), op.a.x, op.data.w, true));
         case kernel::TEXTURE_WINDY: {
             const glm::dvec3 p = texture_space(op, point.position);
             return glm::dvec3(std::abs(octaves(0.1 * p, 0.5, 3, false)) * octaves(p, 0.5, op.data.w, false));
@@ -135,7 +141,8 @@ glm::dvec3 reference_color(const TextureNode& node, const TexturePoint& point, c
         }
         case kernel::TEXTURE_SCALE: return x[0] * x[1];
         case kernel::TEXTURE_MIX: return glm::mix(x[0], x[1], x[2].x);
-        case kernel::TEXTURE_DIRECTION_MIX: return glm::mix(x[1], x[0], std::abs(glm::dot(point.normal, glm::dvec3(op.a))));
+        case kernel::TEXTURE_DIRECTION_MIX:
+            return glm::mix(x[1], x[0], std::abs(glm::dot(point.normal, glm::dvec3(op.a))));
         case kernel::TEXTURE_DOTS: return in_dot(reference_st(op, point), margin) ? x[0] : x[1];
         default: {
             const glm::dvec2 st = reference_st(op, point);
@@ -166,8 +173,8 @@ glm::dvec3 PlainImage::lookup(glm::dvec2 st, double& margin) const {
     }
     const double left = std::floor(x - 0.5), top = std::floor(y - 0.5);
     const int64_t ix = int64_t(left), iy = int64_t(top);
-    return glm::mix(glm::mix(at(ix, iy), at(ix + 1, iy), x - 0.5 - left), glm::mix(at(ix, iy + 1), at(ix + 1, iy + 1), x - 0.5 - left),
-                    y - 0.5 - top);
+    return glm::mix(glm::mix(at(ix, iy), at(ix + 1, iy), x - 0.5 - left),
+                    glm::mix(at(ix, iy + 1), at(ix + 1, iy + 1), x - 0.5 - left), y - 0.5 - top);
 }
 
 }  // namespace lampyris::test

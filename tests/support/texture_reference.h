@@ -25,7 +25,8 @@ struct TexturePoint {
 
 // `margin` becomes smaller than it was where the value jumps within that distance (in units of cells or texels).
 using ImageReference = std::function<glm::dvec3(uint32_t image, glm::dvec2 st, double& margin)>;
-glm::dvec3 reference_color(const TextureNode& node, const TexturePoint& point, const ImageReference& images, double& margin);
+glm::dvec3 reference_color(const TextureNode& node, const TexturePoint& point, const ImageReference& images,
+                           double& margin);
 
 glm::dvec2 reference_st(const TextureOp& op, const TexturePoint& point);
 double reference_noise(glm::dvec3 p);

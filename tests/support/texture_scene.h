@@ -20,7 +20,8 @@ struct TextureScene {
     Scene scene;
 
     TextureScene() {
-        kernel::TransformRecord identity{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
+        kernel::TransformRecord identity{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0},
+                                         {1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
         scene.transforms.push_back(identity);
         scene.instances.push_back({identity, {0, 1, 0, 0}});
         scene.instance_sets.push_back(0);
@@ -52,8 +53,8 @@ struct TextureScene {
         scene.texture_ops.insert(scene.texture_ops.end(), ops.begin(), ops.end());
         return first;
     }
-    uint32_t add_image(const std::vector<uint32_t>& words, uint32_t width, uint32_t height, uint32_t format, uint32_t wrap,
-                       uint32_t filtering, uint32_t decode = 0) {
+    uint32_t add_image(const std::vector<uint32_t>& words, uint32_t width, uint32_t height, uint32_t format,
+                       uint32_t wrap, uint32_t filtering, uint32_t decode = 0) {
         kernel::ImageRecord image{};
         image.data = {uint32_t(scene.texels.size()), width, height, format | wrap << 8 | filtering << 16};
         image.decode.x = decode;

@@ -62,8 +62,10 @@ AttributeEnd
 }
 
 TEST(BuildScene, OrientationFollowsReverseAndHandedness) {
-    const BuiltText text = build_world(std::string("AttributeBegin\nScale -1 1 1\n") + kTriangle + "AttributeEnd\nAttributeBegin\nReverseOrientation\n" +
-                                       kTriangle + "AttributeEnd\nAttributeBegin\nReverseOrientation\nScale 1 1 -1\nShape \"sphere\"\nAttributeEnd\n");
+    const BuiltText text =
+        build_world(std::string("AttributeBegin\nScale -1 1 1\n") + kTriangle +
+                    "AttributeEnd\nAttributeBegin\nReverseOrientation\n" + kTriangle +
+                    "AttributeEnd\nAttributeBegin\nReverseOrientation\nScale 1 1 -1\nShape \"sphere\"\nAttributeEnd\n");
     ASSERT_EQ(text.all_errors(), "");
     const auto& geometries = text.scene().geometries;
     EXPECT_EQ(geometries[0].data.y, GEOMETRY_FLIP);
@@ -73,14 +75,17 @@ TEST(BuildScene, OrientationFollowsReverseAndHandedness) {
 }
 
 TEST(BuildScene, NormalsGoByTheInverseTransposeAndTheReversal) {
-    const BuiltText text = build_world("Scale 2 1 1\nReverseOrientation\nShape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"normal N\" [ 1 0 0 0 1 0 0 0 1 ]");
+    const BuiltText text = build_world(
+        "Scale 2 1 1\nReverseOrientation\nShape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"normal N\" [ 1 0 "
+        "0 0 1 0 0 0 1 ]");
     ASSERT_EQ(text.all_errors(), "");
     EXPECT_EQ(text.scene().normals, (std::vector<float>{-0.5f, 0, 0, 0, -1, 0, 0, 0, -1}));
 }
 
 TEST(BuildScene, InfiniteLightsComeFirst) {
-    const BuiltText text = build_world(std::string("LightSource \"point\" \"rgb I\" [ 1 2 3 ]\nAttributeBegin\nAreaLightSource \"diffuse\"\n") + kTriangle +
-                                       "AttributeEnd\nLightSource \"infinite\" \"rgb L\" [ 0.5 0.5 0.5 ]\n");
+    const BuiltText text = build_world(
+        std::string("LightSource \"point\" \"rgb I\" [ 1 2 3 ]\nAttributeBegin\nAreaLightSource \"diffuse\"\n") +
+        kTriangle + "AttributeEnd\nLightSource \"infinite\" \"rgb L\" [ 0.5 0.5 0.5 ]\n");
     ASSERT_EQ(text.all_errors(), "");
     const Scene& scene = text.scene();
     ASSERT_EQ(scene.lights.size(), 3u);
@@ -93,8 +98,10 @@ TEST(BuildScene, InfiniteLightsComeFirst) {
 }
 
 TEST(BuildScene, InstancesShareTheirSet) {
-    const BuiltText text = build_world(std::string("ObjectBegin \"o\"\nTranslate 0 0 1\n") + kTriangle + "Shape \"sphere\"\nObjectEnd\n" + kTriangle +
-                                       "ObjectBegin \"empty\"\nObjectEnd\nObjectInstance \"o\"\nAttributeBegin\nScale 1 -2 1\nObjectInstance \"o\"\nAttributeEnd\nObjectInstance \"empty\"\n");
+    const BuiltText text = build_world(std::string("ObjectBegin \"o\"\nTranslate 0 0 1\n") + kTriangle +
+                                       "Shape \"sphere\"\nObjectEnd\n" + kTriangle +
+                                       "ObjectBegin \"empty\"\nObjectEnd\nObjectInstance \"o\"\nAttributeBegin\nScale "
+                                       "1 -2 1\nObjectInstance \"o\"\nAttributeEnd\nObjectInstance \"empty\"\n");
     ASSERT_EQ(text.all_errors(), "");
     const Scene& scene = text.scene();
     ASSERT_EQ(scene.instances.size(), 3u);
@@ -110,8 +117,11 @@ TEST(BuildScene, InstancesShareTheirSet) {
 }
 
 TEST(BuildScene, ExposureAndCrop) {
-    const BuiltText text = build_text("Camera \"orthographic\" \"float shutterclose\" 0.5\nFilm \"rgb\" \"float iso\" 400 \"float maxcomponentvalue\" 10 "
-                                      "\"integer xresolution\" 200 \"integer yresolution\" 100 \"float cropwindow\" [ 0.25 0.5 0 0.1 ]\nWorldBegin\n");
+    const BuiltText text = build_text(
+        "Camera \"orthographic\" \"float shutterclose\" 0.5\nFilm \"rgb\" \"float iso\" 400 \"float "
+        "maxcomponentvalue\" 10 "
+        "\"integer xresolution\" 200 \"integer yresolution\" 100 \"float cropwindow\" [ 0.25 0.5 0 0.1 "
+        "]\nWorldBegin\n");
     ASSERT_EQ(text.all_errors(), "");
     const CameraRecord& camera = text.scene().record.camera;
     EXPECT_FLOAT_EQ(camera.lens.w, 2.0f);
@@ -120,7 +130,10 @@ TEST(BuildScene, ExposureAndCrop) {
     EXPECT_EQ(camera.screen.x, -2.0f);  // the shorter side is -1 to 1
     BuildOptions options;
     options.resolution = {{20, 10}};
-    const BuiltText smaller = build_text("Camera \"orthographic\"\nFilm \"rgb\" \"integer xresolution\" 200 \"integer yresolution\" 100 \"float cropwindow\" [ 0.25 0.5 0 0.1 ]\nWorldBegin\n", false, options);
+    const BuiltText smaller = build_text(
+        "Camera \"orthographic\"\nFilm \"rgb\" \"integer xresolution\" 200 \"integer yresolution\" 100 \"float "
+        "cropwindow\" [ 0.25 0.5 0 0.1 ]\nWorldBegin\n",
+        false, options);
     EXPECT_EQ(smaller.built.settings.crop, (std::array<int, 4>{5, 0, 10, 1}));
     EXPECT_EQ(smaller.scene().width(), 20u);
 }
@@ -138,10 +151,11 @@ AttributeEnd
     ASSERT_EQ(text.all_errors(), "");
     const auto& lights = text.scene().lights;
     const auto luminance = [](vec4 e) { return 0.2126f * e.x + 0.7152f * e.y + 0.0722f * e.z; };
-    EXPECT_NEAR(luminance(lights[0].emission), 1.0f, 1e-5f);   // infinite: pi lux from a whole hemisphere is a radiance of 1
-    EXPECT_NEAR(luminance(lights[1].emission), 3.0f, 3e-3f);   // a spectrum has luminance one
-    EXPECT_GT(lights[1].emission.x, lights[1].emission.z);     // and 5000 K is warmer than D65
-    EXPECT_NEAR(luminance(lights[2].emission), 2.0f, 1e-4f);   // 4 pi lumens from an rgb of 2: as pbrt-v4, twice that
+    EXPECT_NEAR(luminance(lights[0].emission), 1.0f,
+                1e-5f);  // infinite: pi lux from a whole hemisphere is a radiance of 1
+    EXPECT_NEAR(luminance(lights[1].emission), 3.0f, 3e-3f);  // a spectrum has luminance one
+    EXPECT_GT(lights[1].emission.x, lights[1].emission.z);    // and 5000 K is warmer than D65
+    EXPECT_NEAR(luminance(lights[2].emission), 2.0f, 1e-4f);  // 4 pi lumens from an rgb of 2: as pbrt-v4, twice that
     EXPECT_NEAR(luminance(lights[3].emission), 1.0f / std::numbers::pi_v<float>, 1e-5f);  // 2 pi (1 - cos 60) = pi
     EXPECT_NEAR(luminance(lights[4].emission), 7.0f, 1e-4f);
     EXPECT_EQ(lights[4].v0, vec4(0.0f, 0.0f, 1.0f, 0.0f));
@@ -179,7 +193,8 @@ NamedMaterial "both"
     EXPECT_EQ(plastic.floats, vec4(0.3f, 0.3f, 1.5f, 0.0f));
     EXPECT_EQ(plastic.floats2.x, 0.01f);
     EXPECT_EQ(plastic.extra.x, 10u);
-    EXPECT_EQ(text.scene().effects.mask(), EFFECT_MIX | EFFECT_CONDUCTOR | EFFECT_ROUGH | EFFECT_ANISOTROPIC | EFFECT_COAT | EFFECT_DIELECTRIC);
+    EXPECT_EQ(text.scene().effects.mask(),
+              EFFECT_MIX | EFFECT_CONDUCTOR | EFFECT_ROUGH | EFFECT_ANISOTROPIC | EFFECT_COAT | EFFECT_DIELECTRIC);
 }
 
 }  // namespace

@@ -36,7 +36,8 @@ TEST(Spectrum, BlackBodyPeaksWhereWienSays) {
     }
     // Illuminant A's chromaticity is (0.44757, 0.40745) (CIE 15:2004).
     glm::vec3 xyz(0.0f);
-    for (float w = kFirstWavelength; w <= kLastWavelength; w += 1.0f) xyz += cie_xyz(w) * named_spectrum("stdillum-A")->at(w);
+    for (float w = kFirstWavelength; w <= kLastWavelength; w += 1.0f)
+        xyz += cie_xyz(w) * named_spectrum("stdillum-A")->at(w);
     EXPECT_NEAR(xyz.x / (xyz.x + xyz.y + xyz.z), 0.44757f, 5e-4f);
     EXPECT_NEAR(xyz.y / (xyz.x + xyz.y + xyz.z), 0.40745f, 5e-4f);
 }
@@ -63,11 +64,15 @@ TEST(Spectrum, MetalsReflectTheirColour) {
         const SampledSpectrum* k = named_spectrum(std::string("metal-") + metal + "-k");
         ASSERT_NE(eta, nullptr) << metal;
         ASSERT_NE(k, nullptr) << metal;
-        const auto reflectance = [](float n, float a) { return ((n - 1) * (n - 1) + a * a) / ((n + 1) * (n + 1) + a * a); };
+        const auto reflectance = [](float n, float a) {
+            return ((n - 1) * (n - 1) + a * a) / ((n + 1) * (n + 1) + a * a);
+        };
         const ConductorRgb rgb = conductor_rgb(*eta, *k);
         const auto at = [](const SampledSpectrum& s, float w) { return s.at(std::min(w, s.wavelengths.back())); };
-        const glm::vec3 wanted = glm::min(reflectance_rgb([&](float w) { return reflectance(at(*eta, w), at(*k, w)); }), glm::vec3(0.9999f));
-        for (int c = 0; c < 3; ++c) EXPECT_NEAR(reflectance(rgb.eta[c], rgb.k[c]), wanted[c], 1e-4f) << metal << " channel " << c;
+        const glm::vec3 wanted =
+            glm::min(reflectance_rgb([&](float w) { return reflectance(at(*eta, w), at(*k, w)); }), glm::vec3(0.9999f));
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(reflectance(rgb.eta[c], rgb.k[c]), wanted[c], 1e-4f) << metal << " channel " << c;
     }
 }
 

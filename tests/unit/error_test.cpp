@@ -9,7 +9,8 @@ namespace {
 
 TEST(Error, MistakesAreToldInTheOrderOfTheSource) {
     Sources sources;
-    const uint32_t first = sources.add_owned("first.pbrt", "one\ntwo\nthree\n"), second = sources.add_owned("second.pbrt", "four\n");
+    const uint32_t first = sources.add_owned("first.pbrt", "one\ntwo\nthree\n"),
+                   second = sources.add_owned("second.pbrt", "four\n");
     Diagnostics diagnostics(sources);
     diagnostics.error({}, "nowhere");
     diagnostics.error({second, 0}, "at four");
@@ -54,7 +55,8 @@ TEST(Error, TheFirstOfManyAreShown) {
     for (uint64_t i = 60; i > 0; --i) diagnostics.error({file, i - 1}, "line " + std::to_string(i));
     const std::vector<std::string> errors = diagnostics.errors();
     ASSERT_EQ(errors.size(), Diagnostics::kMaxShown);
-    for (size_t i = 0; i < errors.size(); ++i) EXPECT_NE(errors[i].find("line " + std::to_string(i + 1) + "\n"), std::string::npos);
+    for (size_t i = 0; i < errors.size(); ++i)
+        EXPECT_NE(errors[i].find("line " + std::to_string(i + 1) + "\n"), std::string::npos);
     EXPECT_EQ(diagnostics.error_count(), 60u);
 }
 

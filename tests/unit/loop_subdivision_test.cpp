@@ -10,7 +10,8 @@ using Face = std::array<uint32_t, 3>;
 
 // An octahedron: all vertices have four neighbours, so every level and the limit keep its symmetry.
 const std::vector<glm::vec3> kOctahedron = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
-const std::vector<Face> kFaces = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+const std::vector<Face> kFaces = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
+                                  {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
 
 TEST(LoopSubdivision, EulerCountsOfAClosedSurface) {
     for (int levels = 0; levels < 4; ++levels) {
@@ -24,7 +25,8 @@ TEST(LoopSubdivision, EulerCountsOfAClosedSurface) {
 // The limit position of a vertex does not depend on how often the mesh was split before.
 TEST(LoopSubdivision, LimitPositionsDoNotDependOnTheLevel) {
     const SubdividedMesh first = loop_subdivide(kOctahedron, kFaces, 0), later = loop_subdivide(kOctahedron, kFaces, 4);
-    for (size_t i = 0; i < kOctahedron.size(); ++i) EXPECT_LT(glm::length(first.positions[i] - later.positions[i]), 1e-5f) << i;
+    for (size_t i = 0; i < kOctahedron.size(); ++i)
+        EXPECT_LT(glm::length(first.positions[i] - later.positions[i]), 1e-5f) << i;
     // At valence 4 the limit is (1 - 4 g) v + g (sum of the ring), g = 1 / (4 + 3 / (8 b)), b = 3 / 32; the ring sums to 0.
     EXPECT_NEAR(first.positions[0].x, 1.0f - 4.0f / 8.0f, 1e-6f);
 }
@@ -48,9 +50,12 @@ TEST(LoopSubdivision, FlatSheetsStayFlatAndKeepTheirBoundary) {
 
 TEST(LoopSubdivision, BrokenMeshesAreTold) {
     EXPECT_NE(loop_subdivide({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 1}}, 1).error.find("twice"), std::string::npos);
-    EXPECT_NE(loop_subdivide({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2}, {0, 1, 3}}, 1).error.find("both run from"), std::string::npos);
+    EXPECT_NE(loop_subdivide({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2}, {0, 1, 3}}, 1)
+                  .error.find("both run from"),
+              std::string::npos);
     // Two fans that meet in one vertex: strange, but no crash.
-    EXPECT_EQ(loop_subdivide({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}}, {{0, 1, 2}, {0, 3, 4}}, 2).error, "");
+    EXPECT_EQ(
+        loop_subdivide({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}}, {{0, 1, 2}, {0, 3, 4}}, 2).error, "");
 }
 
 }  // namespace

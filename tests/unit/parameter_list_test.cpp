@@ -99,11 +99,17 @@ TEST(ParameterList, GettersGiveDefaultsAndReportWrongTypesAndCounts) {
     EXPECT_EQ(f.list.get_choice("mode", "clamp", {"repeat", "clamp"}, f.diagnostics), "clamp");
     const std::vector<std::string> errors = f.diagnostics.errors();
     ASSERT_EQ(errors.size(), 4u);
-    EXPECT_EQ(errors[0].find("p:2:1: error: parameter \"radius\" is of type float, not integer; write \"float radius\""), 0u);
+    EXPECT_EQ(
+        errors[0].find("p:2:1: error: parameter \"radius\" is of type float, not integer; write \"float radius\""), 0u);
     EXPECT_EQ(errors[1].find("p:2:35: error: parameter \"float many\" takes one value, but has 2"), 0u) << errors[1];
-    EXPECT_EQ(errors[2].find("p:2:55: error: \"repaet\" is not a value of \"string mode\" (did you mean \"repeat\"?); it is one of "
-                             "repeat, clamp"), 0u) << errors[2];
-    EXPECT_EQ(errors[3].find("p:2:79: error: parameter \"float empty\" takes one value, but has none"), 0u) << errors[3];
+    EXPECT_EQ(
+        errors[2].find(
+            "p:2:55: error: \"repaet\" is not a value of \"string mode\" (did you mean \"repeat\"?); it is one of "
+            "repeat, clamp"),
+        0u)
+        << errors[2];
+    EXPECT_EQ(errors[3].find("p:2:79: error: parameter \"float empty\" takes one value, but has none"), 0u)
+        << errors[3];
 }
 
 TEST(ParameterList, WhatNobodyAskedForIsAnError) {
@@ -111,26 +117,36 @@ TEST(ParameterList, WhatNobodyAskedForIsAnError) {
     f.list.get_float("radius", 1.0f, f.diagnostics);
     f.list.report_unused("Shape \"sphere\"", {"radius", "zmin"}, f.diagnostics);
     ASSERT_EQ(f.diagnostics.error_count(), 1u);
-    EXPECT_EQ(f.first_error().find("p:2:18: error: parameter \"raduis\" is unknown to Shape \"sphere\" (did you mean \"radius\"?); its "
-                                   "parameters are radius, zmin"), 0u) << f.first_error();
+    EXPECT_EQ(f.first_error().find(
+                  "p:2:18: error: parameter \"raduis\" is unknown to Shape \"sphere\" (did you mean \"radius\"?); its "
+                  "parameters are radius, zmin"),
+              0u)
+        << f.first_error();
 }
 
 TEST(ParameterList, TextErrorsNameTheirPlace) {
     expect_error("\"float radius\" [ 1 2x ]", "p:2:20: error: expected a number for \"float radius\", found \"2x\"");
-    expect_error("\"float radius\" \"2\"", "p:2:16: error: expected a number for \"float radius\", found the string \"2\"");
+    expect_error("\"float radius\" \"2\"",
+                 "p:2:16: error: expected a number for \"float radius\", found the string \"2\"");
     expect_error("\"integer n\" 2.0", "p:2:13: error: expected an integer for \"integer n\", found \"2.0\"");
     expect_error("\"bool b\" maybe", "p:2:10: error: expected true or false for \"bool b\", found \"maybe\"");
     expect_error("\"string s\" word", "p:2:12: error: expected a string in quotes for \"string s\", found \"word\"");
-    expect_error("\"texture s\" 5", "p:2:13: error: expected a texture's name in quotes for \"texture s\", found \"5\"");
-    expect_error("\"rgb c\" [ 1 2 ]", "p:2:1: error: parameter \"rgb c\" has 2 numbers; type rgb takes a multiple of 3");
-    expect_error("\"spectrum c\" [ 400 1 500 ]", "p:2:1: error: parameter \"spectrum c\" has 3 numbers; a spectrum is pairs");
-    expect_error("\"spectrum c\" [ 500 1 400 1 ]", "p:2:1: error: the wavelengths of \"spectrum c\" do not increase at pair 2");
+    expect_error("\"texture s\" 5",
+                 "p:2:13: error: expected a texture's name in quotes for \"texture s\", found \"5\"");
+    expect_error("\"rgb c\" [ 1 2 ]",
+                 "p:2:1: error: parameter \"rgb c\" has 2 numbers; type rgb takes a multiple of 3");
+    expect_error("\"spectrum c\" [ 400 1 500 ]",
+                 "p:2:1: error: parameter \"spectrum c\" has 3 numbers; a spectrum is pairs");
+    expect_error("\"spectrum c\" [ 500 1 400 1 ]",
+                 "p:2:1: error: the wavelengths of \"spectrum c\" do not increase at pair 2");
     expect_error("\"point3 P\" 1 2 3", "p:2:14: error: several values of \"point3 P\" need brackets");
     expect_error("\"float a\" 1 \"float a\" 2", "p:2:13: error: parameter \"a\" is given twice");
     expect_error("\"float a\"", "p:2:1: error: parameter \"float a\" has no value: the file ends");
     expect_error("\"float a\" [ 1", "p:2:11: error: this '[' of \"float a\" is never closed: the file ends first");
-    expect_error("\"string a\" [ \"x\"\nShape \"s\"", "p:2:12: error: this '[' of \"string a\" is never closed: \"Shape\" follows at line 3");
-    expect_error("\"float a\" [ 1 \"float b\" 2", "p:2:11: error: this '[' of \"float a\" is never closed: \"float b\" follows");
+    expect_error("\"string a\" [ \"x\"\nShape \"s\"",
+                 "p:2:12: error: this '[' of \"string a\" is never closed: \"Shape\" follows at line 3");
+    expect_error("\"float a\" [ 1 \"float b\" 2",
+                 "p:2:11: error: this '[' of \"float a\" is never closed: \"float b\" follows");
     expect_error("\"float a\" [ [ 1 ]", "p:2:13: error: expected a number for \"float a\", found \"[\"");
     expect_error("\"a\" 1", "p:2:1: error: \"a\" is no parameter: it has no type");
     expect_error("\"float\" 1", "p:2:1: error: this parameter has a type (float) but no name");

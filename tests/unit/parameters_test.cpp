@@ -11,9 +11,9 @@
 namespace lampyris {
 namespace {
 
-#define PROBE_PARAMS(P)                                  \
-    P(int, rays, 4, 1, 1024, "rays of a hit")            \
-    P(float, distance, 1e30f, 0.0f, 1e30f, "how far")    \
+#define PROBE_PARAMS(P)                               \
+    P(int, rays, 4, 1, 1024, "rays of a hit")         \
+    P(float, distance, 1e30f, 0.0f, 1e30f, "how far") \
     P(unsigned, slots, 2, 1, 8, "slots of a bucket")
 PARAMS(ProbeParams, PROBE_PARAMS)
 
@@ -65,7 +65,8 @@ TEST(PluginChoice, NameAndSettings) {
     EXPECT_EQ(choice.settings[1], (std::pair<std::string, std::string>("load", "0.5")));
     EXPECT_EQ(parse_plugin_choice("path").settings.size(), 0u);
     EXPECT_NE(message_of([] { parse_plugin_choice(":a=1"); }).find("names no plugin"), std::string::npos);
-    EXPECT_NE(message_of([] { parse_plugin_choice("path:depth"); }).find("not of the form key=value"), std::string::npos);
+    EXPECT_NE(message_of([] { parse_plugin_choice("path:depth"); }).find("not of the form key=value"),
+              std::string::npos);
 }
 
 TEST(ParameterSpec, TellsItsRange) {
@@ -81,7 +82,9 @@ TEST(Registry, FindsAndRefusesDuplicates) {
     registry.add({"one", "The first.", {}}, 1);
     ASSERT_NE(registry.find("one"), nullptr);
     EXPECT_EQ(*registry.find("one"), 1);
-    EXPECT_NE(message_of([] { registry.require("on"); }).find("unknown probe \"on\" (did you mean \"one\"?); known: one"), std::string::npos);
+    EXPECT_NE(
+        message_of([] { registry.require("on"); }).find("unknown probe \"on\" (did you mean \"one\"?); known: one"),
+        std::string::npos);
     EXPECT_EQ(message_of(check_registrations), "no error");
     registry.add({"one", "Another.", {}}, 2);
     EXPECT_EQ(*registry.find("one"), 1);

@@ -31,7 +31,9 @@ SceneDescription parse(const std::string& text, const std::string& directory = "
     return std::move(parsed.scene);
 }
 
-glm::vec3 transform_point(const glm::mat4& matrix, const glm::vec3& p) { return glm::vec3(matrix * glm::vec4(p, 1.0f)); }
+glm::vec3 transform_point(const glm::mat4& matrix, const glm::vec3& p) {
+    return glm::vec3(matrix * glm::vec4(p, 1.0f));
+}
 
 void expect_near(const glm::vec3& a, const glm::vec3& b, float tolerance = 1e-6f) {
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], tolerance) << "component " << i;
@@ -160,7 +162,8 @@ TEST(Parser, MatricesAreWrittenByColumns) {
     // The translation stands in the last four numbers.
     expect_near(placed("Transform [ 1 0 0 0  0 1 0 0  0 0 1 0  5 6 7 1 ]", {1, 1, 1}), {6, 7, 8});
     // x goes to y: the first column is (0, 1, 0).
-    expect_near(placed("Translate 1 0 0 ConcatTransform [ 0 1 0 0  -1 0 0 0  0 0 1 0  0 0 0 1 ]", {2, 0, 0}), {1, 2, 0});
+    expect_near(placed("Translate 1 0 0 ConcatTransform [ 0 1 0 0  -1 0 0 0  0 0 1 0  0 0 0 1 ]", {2, 0, 0}),
+                {1, 2, 0});
 }
 
 TEST(Parser, TheCameraLooksAlongZWithXToTheRight) {
@@ -230,8 +233,9 @@ Shape "sphere" "rgb x" [ 1 1 1 ])");
 }
 
 TEST(Parser, AttributesDefaultsNeedNotBeUsed) {
-    const Parsed parsed("WorldBegin Attribute \"light\" \"float scale\" 2 AreaLightSource \"diffuse\" LightSource \"point\" \"float "
-                        "power\" 1");
+    const Parsed parsed(
+        "WorldBegin Attribute \"light\" \"float scale\" 2 AreaLightSource \"diffuse\" LightSource \"point\" \"float "
+        "power\" 1");
     EXPECT_TRUE(parsed.scene.area_lights.at(0).parameters.has("scale"));
     Diagnostics diagnostics(*parsed.sources);
     parsed.scene.area_lights.at(0).parameters.report_unused("x", {}, diagnostics);
@@ -241,8 +245,9 @@ TEST(Parser, AttributesDefaultsNeedNotBeUsed) {
 }
 
 TEST(Parser, WorldBeginResetsTransformsOnly) {
-    const SceneDescription scene = parse("Translate 5 5 5 ColorSpace \"dci-p3\" ActiveTransform EndTime Camera \"perspective\"\n"
-                                         "WorldBegin Shape \"sphere\" \"rgb x\" [ 1 1 1 ]");
+    const SceneDescription scene = parse(
+        "Translate 5 5 5 ColorSpace \"dci-p3\" ActiveTransform EndTime Camera \"perspective\"\n"
+        "WorldBegin Shape \"sphere\" \"rgb x\" [ 1 1 1 ]");
     expect_near(transform_point(scene.shapes[0].world_from_object.matrix[0], {1, 1, 1}), {1, 1, 1});
     EXPECT_EQ(scene.shapes[0].parameters.parameters[0].color_space, "dci-p3");
     EXPECT_EQ(scene.color_space, "srgb");  // there is no Film: pbrt's default
@@ -276,10 +281,14 @@ ObjectInstance "o")");
 TEST(Parser, IncludeSharesTheStateAndImportDoesNot) {
     Folder folder;
     folder.write("parts/a.pbrt", "Translate 1 0 0 Material \"diffuse\" Include \"parts/b.pbrt\"");
-    folder.write_gzip("parts/b.pbrt", "Shape \"sphere\"\n");  // names are relative to the scene, and gzip'd files are fine
-    folder.write("c.pbrt", "Translate 0 5 0 Material \"conductor\" MakeNamedMaterial \"m\" \"string type\" \"diffuse\" Shape \"disk\"");
-    folder.write("main.pbrt", "WorldBegin Include \"parts/a.pbrt\" Import \"c.pbrt\" Shape \"cylinder\" NamedMaterial \"m\" "
-                              "Shape \"sphere\" Include \"parts/b.pbrt\"");
+    folder.write_gzip("parts/b.pbrt",
+                      "Shape \"sphere\"\n");  // names are relative to the scene, and gzip'd files are fine
+    folder.write(
+        "c.pbrt",
+        "Translate 0 5 0 Material \"conductor\" MakeNamedMaterial \"m\" \"string type\" \"diffuse\" Shape \"disk\"");
+    folder.write("main.pbrt",
+                 "WorldBegin Include \"parts/a.pbrt\" Import \"c.pbrt\" Shape \"cylinder\" NamedMaterial \"m\" "
+                 "Shape \"sphere\" Include \"parts/b.pbrt\"");
     auto sources = std::make_shared<Sources>();
     Diagnostics diagnostics(*sources);
     const SceneDescription scene = parse_scene_file(folder.path("main.pbrt"), sources, diagnostics);
@@ -297,7 +306,8 @@ TEST(Parser, IncludeSharesTheStateAndImportDoesNot) {
 TEST(Parser, FilesThatIncludeEachOtherEnd) {
     Folder folder;
     folder.write("a.pbrt", "Include \"b.pbrt\"");
-    folder.write("b.pbrt", "Include \"./../" + std::filesystem::path(folder.path("x")).parent_path().filename().string() + "/a.pbrt\"");
+    folder.write("b.pbrt", "Include \"./../" +
+                               std::filesystem::path(folder.path("x")).parent_path().filename().string() + "/a.pbrt\"");
     auto sources = std::make_shared<Sources>();
     Diagnostics diagnostics(*sources);
     parse_scene_file(folder.path("a.pbrt"), sources, diagnostics);
@@ -313,19 +323,23 @@ TEST(Parser, LaterSettingsWinWithAWarning) {
     EXPECT_EQ(parsed.scene.film.type, "gbuffer");
     EXPECT_FALSE(parsed.scene.film.parameters.has("xresolution"));
     ASSERT_EQ(parsed.diagnostics.warnings().size(), 1u);
-    EXPECT_NE(parsed.diagnostics.warnings()[0].find("scene.pbrt:2:1: warning: Film is given a second time"), std::string::npos);
+    EXPECT_NE(parsed.diagnostics.warnings()[0].find("scene.pbrt:2:1: warning: Film is given a second time"),
+              std::string::npos);
 }
 
 TEST(Parser, ShapesOfObjectsDoNotEmit) {
-    const Parsed parsed("WorldBegin AreaLightSource \"diffuse\" ObjectBegin \"o\" Shape \"sphere\" ObjectEnd Shape \"disk\"");
+    const Parsed parsed(
+        "WorldBegin AreaLightSource \"diffuse\" ObjectBegin \"o\" Shape \"sphere\" ObjectEnd Shape \"disk\"");
     EXPECT_EQ(parsed.scene.objects.at(0).shapes.at(0).area_light, kNone);
     EXPECT_EQ(parsed.scene.shapes.at(0).area_light, 0u);
     EXPECT_EQ(parsed.diagnostics.warnings().size(), 1u);
 }
 
 TEST(Parser, GoesOnAfterErrors) {
-    const Parsed parsed("WorldBegin\nShape \"sphere\" \"float radius\" x\nShpe \"a\" [ 1 2 ] \"b\"\nShape \"disk\" \"float r\" [ 1\nShape "
-                        "\"cylinder\"\n");
+    const Parsed parsed(
+        "WorldBegin\nShape \"sphere\" \"float radius\" x\nShpe \"a\" [ 1 2 ] \"b\"\nShape \"disk\" \"float r\" [ "
+        "1\nShape "
+        "\"cylinder\"\n");
     EXPECT_EQ(parsed.diagnostics.error_count(), 3u);
     ASSERT_EQ(parsed.scene.shapes.size(), 3u);
     EXPECT_EQ(parsed.scene.shapes[2].type, "cylinder");

@@ -48,18 +48,20 @@ std::string error_of(const std::string& bytes) {
 }
 
 const std::string kAscii =
-    "ply\nformat ascii 1.0\ncomment made by hand\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
+    "ply\nformat ascii 1.0\ncomment made by hand\nelement vertex 5\nproperty float x\nproperty float y\nproperty float "
+    "z\n"
     "element face 3\nproperty list uchar int vertex_indices\nend_header\n"
     "0 0 0\n1 0 0\n1 1 0\n0 1 0\n0.5 0.5 1e-1\n3 0 1 2\n4 0 1 2 3\n5 0 1 2 3 4\n";
 
 // Four vertices with normals and texture coordinates, one triangle and one quad, with indices of faces.
 std::string binary(bool big, const std::string& index_type = "int", bool is_short = false) {
-    std::string bytes = std::string("ply\nformat binary_") + (big ? "big" : "little") +
-                        "_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-                        "property uchar red\nproperty double nx\nproperty double ny\nproperty double nz\n"
-                        "property float s\nproperty float t\nelement edge 2\nproperty int a\nproperty list uchar short b\n"
-                        "element face 2\nproperty list uchar " + index_type +
-                        " vertex_index\nproperty int face_indices\nend_header\n";
+    std::string bytes =
+        std::string("ply\nformat binary_") + (big ? "big" : "little") +
+        "_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+        "property uchar red\nproperty double nx\nproperty double ny\nproperty double nz\n"
+        "property float s\nproperty float t\nelement edge 2\nproperty int a\nproperty list uchar short b\n"
+        "element face 2\nproperty list uchar " +
+        index_type + " vertex_index\nproperty int face_indices\nend_header\n";
     for (int i = 0; i < 4; ++i) {
         for (int c = 0; c < 3; ++c) put(bytes, 1.5f * static_cast<float>(3 * i + c), big);
         put(bytes, uint8_t{200});
@@ -89,8 +91,9 @@ std::string binary(bool big, const std::string& index_type = "int", bool is_shor
 
 // A file that takes the shortest way through the reader.
 std::string usual(const std::string& more = "") {
-    std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
-                        "property float z\nelement face 3\nproperty list uchar int vertex_indices\nend_header\n";
+    std::string bytes =
+        "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+        "property float z\nelement face 3\nproperty list uchar int vertex_indices\nend_header\n";
     for (int i = 0; i < 12; ++i) put(bytes, static_cast<float>(i));
     for (const std::vector<int>& face : {std::vector<int>{0, 1, 2}, {0, 1}, {0, 1, 2, 3}}) {
         put(bytes, static_cast<uint8_t>(face.size()));
@@ -203,7 +206,8 @@ TEST(Ply, RefusesNumbersThatAreNotFinite) {
     const size_t body = bytes.find("end_header\n") + 11;
     const float infinite = std::numeric_limits<float>::infinity();
     std::memcpy(bytes.data() + body + 12 + 4, &infinite, 4);
-    EXPECT_NE(error_of(bytes).find("property \"y\" of vertex 1 is not a finite float"), std::string::npos) << error_of(bytes);
+    EXPECT_NE(error_of(bytes).find("property \"y\" of vertex 1 is not a finite float"), std::string::npos)
+        << error_of(bytes);
 }
 
 TEST(Ply, ErrorsNameTheirPlace) {
@@ -217,10 +221,12 @@ TEST(Ply, ErrorsNameTheirPlace) {
         {"ply\nformat ascii 2.0\n", "mesh.ply:2:14: error: the only PLY version is 1.0"},
         {"ply\nelemnt vertex 1\n", "mesh.ply:2:1: error: unknown header line \"elemnt\" (did you mean \"element\"?)"},
         {"ply\nelement vertex -1\n", "mesh.ply:2:16: error: \"-1\" is no count"},
-        {"ply\nelement vertex 1\nproperty flaot x\n", "mesh.ply:3:10: error: unknown type \"flaot\" (did you mean \"float\"?)"},
+        {"ply\nelement vertex 1\nproperty flaot x\n",
+         "mesh.ply:3:10: error: unknown type \"flaot\" (did you mean \"float\"?)"},
         {"ply\nproperty float x\n", "mesh.ply:2:1: error: a property before the first element"},
         {"ply\nelement a 1\nelement a 1\n", "mesh.ply:3:9: error: element \"a\" is declared twice"},
-        {"ply\nelement a 1\nproperty int x\nproperty int x\n", "mesh.ply:4:1: error: property \"x\" of \"a\" is declared twice"},
+        {"ply\nelement a 1\nproperty int x\nproperty int x\n",
+         "mesh.ply:4:1: error: property \"x\" of \"a\" is declared twice"},
         {"ply\nelement a 1\nproperty list float int x\n", "mesh.ply:3:15: error: the count of a list is an integer"},
         {"ply\nend_header\n", "mesh.ply:1:1: error: the header has no \"format\" line"},
         {"ply\nformat ascii 1.0\nend_header\n", "error: the file has no element \"vertex\""},

@@ -65,7 +65,9 @@ void expect_error(const BuiltText& text, const std::string& part) {
 
 TEST(TextureBuilder, CheckerboardOfConstants) {
     const BuiltText text = build_textured(
-        "Texture \"t\" \"spectrum\" \"checkerboard\" \"float uscale\" 8 \"float vdelta\" 0.5 \"rgb tex1\" [ 0.8 0.7 0.6 ]", kTextured);
+        "Texture \"t\" \"spectrum\" \"checkerboard\" \"float uscale\" 8 \"float vdelta\" 0.5 \"rgb tex1\" [ 0.8 0.7 "
+        "0.6 ]",
+        kTextured);
     const std::vector<TextureOp> ops = program_of(text);
     ASSERT_EQ(kinds(ops), (Kinds{TEXTURE_CONSTANT, TEXTURE_CONSTANT, TEXTURE_CHECKERBOARD})) << text.all_errors();
     EXPECT_EQ(vec3(ops[0].a), vec3(0.8f, 0.7f, 0.6f));
@@ -77,15 +79,19 @@ TEST(TextureBuilder, CheckerboardOfConstants) {
 
 TEST(TextureBuilder, TransformsReachMappings) {
     const std::string before = "Translate 10 0 0\nScale 2 2 2\n";
-    const BuiltText space = build_textured(before + "Texture \"t\" \"spectrum\" \"checkerboard\" \"integer dimension\" 3", kTextured);
+    const BuiltText space =
+        build_textured(before + "Texture \"t\" \"spectrum\" \"checkerboard\" \"integer dimension\" 3", kTextured);
     EXPECT_EQ(program_of(space).back().data.y >> 8, MAPPING_SPACE);
     EXPECT_EQ(program_of(space).back().m0, vec4(0.5f, 0, 0, -5));
-    const BuiltText planar = build_textured(
-        before + "Texture \"t\" \"spectrum\" \"dots\" \"string mapping\" \"planar\" \"vector3 v1\" [ 0 4 0 ] \"float udelta\" 7", kTextured);
+    const BuiltText planar = build_textured(before +
+                                                "Texture \"t\" \"spectrum\" \"dots\" \"string mapping\" \"planar\" "
+                                                "\"vector3 v1\" [ 0 4 0 ] \"float udelta\" 7",
+                                            kTextured);
     EXPECT_EQ(program_of(planar).back().m0, vec4(0, 2, 0, 7));
     EXPECT_EQ(program_of(planar).back().m1, vec4(0, 0.5f, 0, 0));
     EXPECT_TRUE(planar.scene().effects.has(EFFECT_NOISE));
-    const BuiltText direction = build_textured("Rotate 90 0 0 1\nTexture \"t\" \"spectrum\" \"directionmix\" \"vector3 dir\" [ 3 0 0 ]", kTextured);
+    const BuiltText direction = build_textured(
+        "Rotate 90 0 0 1\nTexture \"t\" \"spectrum\" \"directionmix\" \"vector3 dir\" [ 3 0 0 ]", kTextured);
     EXPECT_NEAR(program_of(direction).back().a.y, 1.0f, 1e-6f);
     expect_error(build_textured("Scale 1 0 1\nTexture \"t\" \"spectrum\" \"marble\"", kTextured), "cannot be inverted");
 }
@@ -102,7 +108,8 @@ TEST(TextureBuilder, WhatIsConstantStaysConstant) {
 
 TEST(TextureBuilder, FloatAndSpectrumNamesAreApart) {
     const BuiltText text = build_textured(
-        "Texture \"t\" \"float\" \"constant\" \"float value\" 0.25\nTexture \"t\" \"spectrum\" \"constant\" \"rgb value\" [ 1 0 0 ]",
+        "Texture \"t\" \"float\" \"constant\" \"float value\" 0.25\nTexture \"t\" \"spectrum\" \"constant\" \"rgb "
+        "value\" [ 1 0 0 ]",
         std::string(kTextured) + " \"texture displacement\" \"t\"");
     ASSERT_EQ(text.all_errors(), "");
     const MaterialRecord& m = text.scene().materials[0];
@@ -113,7 +120,8 @@ TEST(TextureBuilder, FloatAndSpectrumNamesAreApart) {
 TEST(TextureBuilder, UnusedTexturesCostNothingButAreChecked) {
     const Folder folder;
     write_png(folder / "a.png", 1, 1, {10, 20, 30});
-    const BuiltText fine = build_textured("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\"", "", folder.path());
+    const BuiltText fine =
+        build_textured("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\"", "", folder.path());
     EXPECT_EQ(fine.all_errors(), "");
     EXPECT_TRUE(fine.scene().texture_ops.empty());
     EXPECT_TRUE(fine.scene().images.empty());
@@ -134,14 +142,21 @@ TEST(TextureBuilder, ErrorsSayWhatIsWrong) {
     expect_error(image("\"string filename\" \"wood.png\" \"string encoding\" \"gama 2\""), "\"gama 2\" is no encoding");
     expect_error(image("\"string filename\" \"wood.png\" \"string wrap\" \"repaet\""), "did you mean \"repeat\"");
     expect_error(image("\"string filename\" \"wood.png\" \"float uscal\" 2"), "did you mean \"uscale\"");
-    expect_error(build_textured("", "Material \"diffuse\" \"texture reflectance\" \"wood\""), "there is no spectrum texture \"wood\"");
-    expect_error(build_textured("Texture \"t\" \"float\" \"constant\"", kTextured), "\"t\" is a float texture, and this takes a spectrum texture");
-    expect_error(build_textured("Texture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"later\"\nTexture \"later\" \"spectrum\" \"constant\"", kTextured),
+    expect_error(build_textured("", "Material \"diffuse\" \"texture reflectance\" \"wood\""),
+                 "there is no spectrum texture \"wood\"");
+    expect_error(build_textured("Texture \"t\" \"float\" \"constant\"", kTextured),
+                 "\"t\" is a float texture, and this takes a spectrum texture");
+    expect_error(build_textured("Texture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"later\"\nTexture \"later\" "
+                                "\"spectrum\" \"constant\"",
+                                kTextured),
                  "it is defined only at test.pbrt:4:1");
-    expect_error(build_textured("Texture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"t\"", kTextured), "there is no spectrum texture \"t\"");
-    expect_error(build_textured("Texture \"t\" \"spectrum\" \"constant\" \"float value\" 1", kTextured), "\"value\" of a spectrum texture is of type float");
+    expect_error(build_textured("Texture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"t\"", kTextured),
+                 "there is no spectrum texture \"t\"");
+    expect_error(build_textured("Texture \"t\" \"spectrum\" \"constant\" \"float value\" 1", kTextured),
+                 "\"value\" of a spectrum texture is of type float");
     expect_error(build_textured("Texture \"t\" \"spectrum\" \"fbm\"", kTextured), "is a float texture");
-    expect_error(build_textured("Texture \"t\" \"spectrum\" \"ptex\" \"string filename\" \"a.ptx\"", kTextured), "ptex");
+    expect_error(build_textured("Texture \"t\" \"spectrum\" \"ptex\" \"string filename\" \"a.ptx\"", kTextured),
+                 "ptex");
 }
 
 // A texture that doubles at each level would have 2^40 operations: it is refused, and quickly.
@@ -149,9 +164,11 @@ TEST(TextureBuilder, TexturesThatGrowWithoutBoundAreRefused) {
     std::string textures = "Texture \"t0\" \"spectrum\" \"checkerboard\"\n";
     for (int i = 1; i <= 40; ++i) {
         const std::string below = std::to_string(i - 1), name = std::to_string(i);
-        textures += "Texture \"t" + name + "\" \"spectrum\" \"checkerboard\" \"texture tex1\" \"t" + below + "\" \"texture tex2\" \"t" + below + "\"\n";
+        textures += "Texture \"t" + name + "\" \"spectrum\" \"checkerboard\" \"texture tex1\" \"t" + below +
+                    "\" \"texture tex2\" \"t" + below + "\"\n";
     }
-    expect_error(build_textured(textures, "Material \"diffuse\" \"texture reflectance\" \"t40\""), "at most 1024 operations");
+    expect_error(build_textured(textures, "Material \"diffuse\" \"texture reflectance\" \"t40\""),
+                 "at most 1024 operations");
 }
 
 // ---- Images ----------------------------------------------------------------------------------------------------------
@@ -161,8 +178,10 @@ TEST(TextureBuilder, OneFileIsLoadedOnce) {
     write_png(folder / "a.png", 2, 2, {0, 0, 0, 255, 0, 0, 0, 255, 0, 0, 0, 255});
     const BuiltText text = build_textured(
         "Texture \"a\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\"\n"
-        "Texture \"b\" \"spectrum\" \"imagemap\" \"string filename\" \"./a.png\" \"string wrap\" \"clamp\" \"float scale\" 0.5\n"
-        "Texture \"c\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\" \"string encoding\" \"linear\" \"string filter\" \"EWA\"\n"
+        "Texture \"b\" \"spectrum\" \"imagemap\" \"string filename\" \"./a.png\" \"string wrap\" \"clamp\" \"float "
+        "scale\" 0.5\n"
+        "Texture \"c\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\" \"string encoding\" \"linear\" \"string "
+        "filter\" \"EWA\"\n"
         "Texture \"ab\" \"spectrum\" \"mix\" \"texture tex1\" \"a\" \"texture tex2\" \"b\"\n"
         "Texture \"t\" \"spectrum\" \"mix\" \"texture tex1\" \"ab\" \"texture tex2\" \"c\"",
         kTextured, folder.path());
@@ -190,13 +209,15 @@ class StoredImage : public testing::TestWithParam<Image::Storage> {};
 // What a kernel would decode is what the image says, to the format's precision.
 TEST_P(StoredImage, KeepsItsValues) {
     for (const bool grey : {false, true})
-        for (const TexelEncoding::Kind kind : {TexelEncoding::Kind::kLinear, TexelEncoding::Kind::kSrgb, TexelEncoding::Kind::kGamma}) {
+        for (const TexelEncoding::Kind kind :
+             {TexelEncoding::Kind::kLinear, TexelEncoding::Kind::kSrgb, TexelEncoding::Kind::kGamma}) {
             const bool integers = GetParam() == Image::Storage::kUint8 || GetParam() == Image::Storage::kUint16;
             Image image(7, 5, grey ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B", "A"});
             image.storage = GetParam();
             const double levels = GetParam() == Image::Storage::kUint8 ? 255 : 65535;
             for (size_t i = 0; i < image.pixels.size(); ++i)
-                image.pixels[i] = integers ? float(double(i * 7919 % size_t(levels + 1)) / levels) : float(i) * 0.37f - 9.0f;
+                image.pixels[i] =
+                    integers ? float(double(i * 7919 % size_t(levels + 1)) / levels) : float(i) * 0.37f - 9.0f;
             Scene scene;
             const Sources sources;
             Diagnostics diagnostics(sources);
@@ -209,7 +230,8 @@ TEST_P(StoredImage, KeepsItsValues) {
             for (size_t p = 0; p < pixels.size(); ++p)
                 for (int c = 0; c < 3; ++c) {
                     double want = image.pixels[p * size_t(image.channels) + (grey ? 0 : size_t(c))];
-                    if (integers && kind == TexelEncoding::Kind::kSrgb) want = want <= 0.04045 ? want / 12.92 : std::pow((want + 0.055) / 1.055, 2.4);
+                    if (integers && kind == TexelEncoding::Kind::kSrgb)
+                        want = want <= 0.04045 ? want / 12.92 : std::pow((want + 0.055) / 1.055, 2.4);
                     if (integers && kind == TexelEncoding::Kind::kGamma) want = std::pow(want, 2.5);
                     // Halves have eleven bits; below 2^-14 their step is 2^-24.
                     ASSERT_NEAR(pixels[p][c], want, std::abs(want) * 0x1p-11 + 0x1p-24);
@@ -220,7 +242,8 @@ TEST_P(StoredImage, KeepsItsValues) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Storages, StoredImage,
-                         testing::Values(Image::Storage::kUint8, Image::Storage::kUint16, Image::Storage::kHalf, Image::Storage::kFloat));
+                         testing::Values(Image::Storage::kUint8, Image::Storage::kUint16, Image::Storage::kHalf,
+                                         Image::Storage::kFloat));
 
 TEST(ImageStoreTest, NumbersThatAreNotFiniteAreReplacedAndTold) {
     Image image(2, 1, {"R", "G", "B"});

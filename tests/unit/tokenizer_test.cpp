@@ -53,7 +53,9 @@ TEST(Tokenizer, SplitsWordsStringsAndBrackets) {
 }
 
 TEST(Tokenizer, PlacesTokens) {
-    Text text("\xef\xbb\xbf" "a\n  \"b\"\r\n\tc");  // with a byte order mark
+    Text text(
+        "\xef\xbb\xbf"
+        "a\n  \"b\"\r\n\tc");  // with a byte order mark
     EXPECT_EQ(text.sources.describe(text.tokenizer.next().location), "a.pbrt:1:4");
     EXPECT_EQ(text.sources.describe(text.tokenizer.next().location), "a.pbrt:2:3");
     EXPECT_EQ(text.sources.describe(text.tokenizer.next().location), "a.pbrt:3:2");
@@ -67,7 +69,8 @@ TEST(Tokenizer, ResolvesEscapes) {
     EXPECT_FALSE(text.diagnostics.has_errors());
     text.tokenizer.string_value(text.tokenizer.next());
     ASSERT_EQ(text.diagnostics.errors().size(), 1u);
-    EXPECT_NE(text.diagnostics.errors()[0].find("a.pbrt:1:16: error: unknown escape sequence \"\\q\""), std::string::npos)
+    EXPECT_NE(text.diagnostics.errors()[0].find("a.pbrt:1:16: error: unknown escape sequence \"\\q\""),
+              std::string::npos)
         << text.diagnostics.errors()[0];
 }
 
@@ -87,11 +90,33 @@ TEST(Tokenizer, ReportsUtf16) {
 
 TEST(Numbers, AreExact) {
     // Halfway cases between two floats, the smallest and largest floats, and numbers with more digits than 64 bits hold.
-    for (const char* text :
-         {"0", "-0", "1", "-1.5", ".5", "5.", "1e3", "1E-3", "0.1", "16777217", "16777219", "16777217.0000001", "3.4028235e38",
-          "3.40282356e38", "1.17549435e-38", "1.1754942e-38", "1.4e-45", "7.1e-46", "0.00000000000000000000000000001234567",
-          "123456789012345678901234567890", "1.00000005960464477539062500000000000001", "1.000000059604644775390625",
-          "0.3333333333333333333333333333333333", "8.5899345920000001e9", "1e22", "1e-22", "9007199254740993"}) {
+    for (const char* text : {"0",
+                             "-0",
+                             "1",
+                             "-1.5",
+                             ".5",
+                             "5.",
+                             "1e3",
+                             "1E-3",
+                             "0.1",
+                             "16777217",
+                             "16777219",
+                             "16777217.0000001",
+                             "3.4028235e38",
+                             "3.40282356e38",
+                             "1.17549435e-38",
+                             "1.1754942e-38",
+                             "1.4e-45",
+                             "7.1e-46",
+                             "0.00000000000000000000000000001234567",
+                             "123456789012345678901234567890",
+                             "1.00000005960464477539062500000000000001",
+                             "1.000000059604644775390625",
+                             "0.3333333333333333333333333333333333",
+                             "8.5899345920000001e9",
+                             "1e22",
+                             "1e-22",
+                             "9007199254740993"}) {
         float value = -7.0f;
         EXPECT_EQ(status_of_float(text, value), NumberStatus::kOk) << text;
         EXPECT_EQ(std::bit_cast<uint32_t>(value), std::bit_cast<uint32_t>(expected_float(text))) << text;
@@ -105,7 +130,8 @@ TEST(Numbers, AreExact) {
     }
     for (const char* huge : {"1e39", "-1e400", "1e99999999999999999999", "3.5e38"})
         EXPECT_EQ(status_of_float(huge, value), NumberStatus::kOutOfRange) << huge;
-    for (const char* bad : {"", "-", "+", ".", "e5", "1e", "1e+", "1.2.3", "0x10", "inf", "nan", "-inf", "1,", "--1", "+-1", "1f"})
+    for (const char* bad :
+         {"", "-", "+", ".", "e5", "1e", "1e+", "1.2.3", "0x10", "inf", "nan", "-inf", "1,", "--1", "+-1", "1f"})
         EXPECT_EQ(status_of_float(bad, value), NumberStatus::kNotANumber) << bad;
 }
 
@@ -121,7 +147,8 @@ TEST(Numbers, AgreeWithTheStandardLibrary) {
         const double middle = 0.5 * (double(value) + double(std::nextafter(value, 2.0f * value)));
         for (double shown : {double(value), middle}) {
             const int precision = 6 + static_cast<int>(random() % 12);
-            const auto written = std::to_chars(buffer, buffer + sizeof buffer, shown, std::chars_format::scientific, precision);
+            const auto written =
+                std::to_chars(buffer, buffer + sizeof buffer, shown, std::chars_format::scientific, precision);
             const std::string_view text(buffer, static_cast<size_t>(written.ptr - buffer));
             float expected = 0.0f;
             const auto read = std::from_chars(text.data(), text.data() + text.size(), expected);
@@ -138,14 +165,19 @@ TEST(Numbers, ReadIntegers) {
         return parse_int(text.data(), text.data() + text.size(), value).status;
     };
     int32_t value = 0;
-    for (const auto& [text, expected] : {std::pair<const char*, int32_t>{"0", 0}, {"-5", -5}, {"+7", 7}, {"2147483647", INT32_MAX},
-                                         {"-2147483648", INT32_MIN}, {"0000000000000000000012", 12}}) {
+    for (const auto& [text, expected] : {std::pair<const char*, int32_t>{"0", 0},
+                                         {"-5", -5},
+                                         {"+7", 7},
+                                         {"2147483647", INT32_MAX},
+                                         {"-2147483648", INT32_MIN},
+                                         {"0000000000000000000012", 12}}) {
         EXPECT_EQ(parse(text, value), NumberStatus::kOk) << text;
         EXPECT_EQ(value, expected);
     }
     for (const char* text : {"2147483648", "-2147483649", "99999999999999999999999", "-99999999999999999999999"})
         EXPECT_EQ(parse(text, value), NumberStatus::kOutOfRange) << text;
-    for (const char* text : {"", "-", "1.0", "1e3", "x", "1x"}) EXPECT_EQ(parse(text, value), NumberStatus::kNotANumber) << text;
+    for (const char* text : {"", "-", "1.0", "1e3", "x", "1x"})
+        EXPECT_EQ(parse(text, value), NumberStatus::kNotANumber) << text;
 }
 
 TEST(Sources, ShowTheLineWithACaret) {

@@ -42,8 +42,9 @@ struct MemoryMeter {
     size_t now = 0, peak = 0, limit = 0;
     void add(size_t bytes, std::string_view what) {
         if (limit && now + bytes > limit)
-            throw MachineError(fmt::format("error: {} needs {:.1f} MB, which goes beyond --max-memory ({:.1f} MB; {:.1f} MB are in use)",
-                                           what, double(bytes) / 1e6, double(limit) / 1e6, double(now) / 1e6));
+            throw MachineError(fmt::format(
+                "error: {} needs {:.1f} MB, which goes beyond --max-memory ({:.1f} MB; {:.1f} MB are in use)", what,
+                double(bytes) / 1e6, double(limit) / 1e6, double(now) / 1e6));
         now += bytes;
         peak = std::max(peak, now);
     }
@@ -51,7 +52,8 @@ struct MemoryMeter {
 
 class CpuBuffer final : public Buffer {
  public:
-    CpuBuffer(size_t bytes, std::string_view name, std::shared_ptr<MemoryMeter> meter) : size_(bytes), meter_(std::move(meter)) {
+    CpuBuffer(size_t bytes, std::string_view name, std::shared_ptr<MemoryMeter> meter)
+        : size_(bytes), meter_(std::move(meter)) {
         meter_->add(bytes, name);
         // 64 bytes more: a reader may load whole vectors past the end.
         data_ = static_cast<std::byte*>(::operator new(bytes + 64, std::align_val_t(64), std::nothrow));
@@ -93,10 +95,12 @@ std::string processor_name() {
 
 class CpuDevice final : public Device {
  public:
-    CpuDevice(CpuTracerKind tracer, const DeviceOptions& options) : tracer_(tracer), meter_(std::make_shared<MemoryMeter>()) {
+    CpuDevice(CpuTracerKind tracer, const DeviceOptions& options)
+        : tracer_(tracer), meter_(std::make_shared<MemoryMeter>()) {
         meter_->limit = options.max_memory;
         if (!options.device.empty() && options.device != "0" && description().find(options.device) == std::string::npos)
-            throw InputError(fmt::format("error: --device {}: the CPU backends have one device: 0, {}", options.device, description()));
+            throw InputError(fmt::format("error: --device {}: the CPU backends have one device: 0, {}", options.device,
+                                         description()));
         threads_ = options.threads ? options.threads : std::max(1u, std::thread::hardware_concurrency());
         // TBB starts as many threads as the machine has, whatever an arena asks for, unless it is told.
         if (threads_ > std::thread::hardware_concurrency())
@@ -156,7 +160,9 @@ class CpuDevice final : public Device {
         });
         statistics_.kernel_s[cpu_kernel.file_] += seconds_since(start);
         if (unfinished)
-            throw MachineError(fmt::format("error: kernel {} could not finish a loop within its bound; the image would be wrong", cpu_kernel.file_));
+            throw MachineError(
+                fmt::format("error: kernel {} could not finish a loop within its bound; the image would be wrong",
+                            cpu_kernel.file_));
     }
 
     DeviceStatistics statistics() const override {

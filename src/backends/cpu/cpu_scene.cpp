@@ -24,10 +24,20 @@ struct CpuScene::OwnBvh {
 
 CpuScene::CpuScene(const Scene& scene, CpuTracerKind tracer) {
     // In the order of core/kernel/bindings.h.
-    void* const arrays[] = {const_cast<kernel::SceneRecord*>(&scene.record), data_of(scene.geometries), data_of(scene.indices),
-                            data_of(scene.positions), data_of(scene.normals), data_of(scene.uvs), data_of(scene.transforms),
-                            data_of(scene.instances), data_of(scene.materials), data_of(scene.texture_ops), data_of(scene.images),
-                            data_of(scene.texels), data_of(scene.lights), data_of(scene.distributions)};
+    void* const arrays[] = {const_cast<kernel::SceneRecord*>(&scene.record),
+                            data_of(scene.geometries),
+                            data_of(scene.indices),
+                            data_of(scene.positions),
+                            data_of(scene.normals),
+                            data_of(scene.uvs),
+                            data_of(scene.transforms),
+                            data_of(scene.instances),
+                            data_of(scene.materials),
+                            data_of(scene.texture_ops),
+                            data_of(scene.images),
+                            data_of(scene.texels),
+                            data_of(scene.lights),
+                            data_of(scene.distributions)};
     std::copy(std::begin(arrays), std::end(arrays), buffers_.begin());
     if (tracer == CpuTracerKind::bvh2) {
         bvh_ = std::make_unique<OwnBvh>(OwnBvh{build_bvh2(scene), scene.record, scene.instances});

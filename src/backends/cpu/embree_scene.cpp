@@ -42,7 +42,10 @@ RTCRay make_ray(const float o[3], const float d[3], float t_max) {
 }  // namespace
 
 EmbreeScene::EmbreeScene(const Scene& scene, void* const* scene_buffers)
-    : scene_(scene), scene_buffers_(scene_buffers), largest_ray_(kLargestRay), device_(rtcNewDevice("start_threads=0")) {
+    : scene_(scene),
+      scene_buffers_(scene_buffers),
+      largest_ray_(kLargestRay),
+      device_(rtcNewDevice("start_threads=0")) {
     if (!device_.get()) throw MachineError("error: Embree cannot start on this processor");
     rtcSetDeviceMemoryMonitorFunction(device_.get(), count_memory, &memory_);
 
@@ -68,7 +71,8 @@ EmbreeScene::EmbreeScene(const Scene& scene, void* const* scene_buffers)
         const kernel::TransformRecord& t = scene.instances[i].transform;
         for (const kernel::vec4& row : {t.from0, t.from1, t.from2}) {
             const float stretch = std::abs(row.x) + std::abs(row.y) + std::abs(row.z);
-            largest_ray_ = std::min(largest_ray_, (kLargestRay - std::min(std::abs(row.w), kLargestRay)) / std::max(stretch, 1.0f));
+            largest_ray_ = std::min(largest_ray_,
+                                    (kLargestRay - std::min(std::abs(row.w), kLargestRay)) / std::max(stretch, 1.0f));
         }
     }
     rtcCommitScene(top_.get());
@@ -80,8 +84,8 @@ CpuTracer EmbreeScene::tracer() { return {this, &EmbreeScene::closest, &EmbreeSc
 // Such rays meet nothing, as in the other tracers; what they were made from is not finite, and is reported as a sample.
 bool EmbreeScene::traceable(const float o[3], const float d[3], float t_max) const {
     const float m = largest_ray_;
-    return (std::abs(o[0]) <= m) & (std::abs(o[1]) <= m) & (std::abs(o[2]) <= m) & (std::abs(d[0]) <= m) & (std::abs(d[1]) <= m) &
-           (std::abs(d[2]) <= m) & (t_max >= 0.0f);
+    return (std::abs(o[0]) <= m) & (std::abs(o[1]) <= m) & (std::abs(o[2]) <= m) & (std::abs(d[0]) <= m) &
+           (std::abs(d[1]) <= m) & (std::abs(d[2]) <= m) & (t_max >= 0.0f);
 }
 
 void EmbreeScene::attach_geometries(RTCScene target, uint32_t set) {
@@ -100,8 +104,8 @@ EmbreeGeometry EmbreeScene::make_geometry(uint32_t index) {
     if (record.data.x == kernel::GEOMETRY_TRIANGLES) {
         EmbreeGeometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
         const size_t vertices = scene_.positions.size() / 3 - record.data.w;
-        rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, scene_.positions.data(),
-                                   size_t(record.data.w) * 12, 12, vertices);
+        rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                   scene_.positions.data(), size_t(record.data.w) * 12, 12, vertices);
         rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, scene_.indices.data(),
                                    size_t(record.data.z) * 4, 12, count);
         return geometry;
@@ -151,7 +155,8 @@ bool EmbreeScene::occluded(void* self, const float origin[3], const float direct
 void EmbreeScene::user_bounds(const RTCBoundsFunctionArguments* arguments) {
     const UserGeometry& geometry = *static_cast<const UserGeometry*>(arguments->geometryUserPtr);
     const PrimitiveBounds bounds = primitive_bounds(geometry.owner->scene_, geometry.geometry, arguments->primID);
-    *arguments->bounds_o = {bounds.low.x, bounds.low.y, bounds.low.z, 0.0f, bounds.high.x, bounds.high.y, bounds.high.z, 0.0f};
+    *arguments->bounds_o = {bounds.low.x,  bounds.low.y,  bounds.low.z,  0.0f,
+                            bounds.high.x, bounds.high.y, bounds.high.z, 0.0f};
 }
 
 void EmbreeScene::user_intersect(const RTCIntersectFunctionNArguments* arguments) {
@@ -173,7 +178,8 @@ void EmbreeScene::user_occluded(const RTCOccludedFunctionNArguments* arguments) 
     const UserGeometry& geometry = *static_cast<const UserGeometry*>(arguments->geometryUserPtr);
     RTCRay& ray = *reinterpret_cast<RTCRay*>(arguments->ray);
     float t = 0.0f;
-    if (primitive_hit(geometry.owner->scene_buffers_, geometry.geometry, arguments->primID, &ray.org_x, &ray.dir_x, ray.tfar, t))
+    if (primitive_hit(geometry.owner->scene_buffers_, geometry.geometry, arguments->primID, &ray.org_x, &ray.dir_x,
+                      ray.tfar, t))
         ray.tfar = -std::numeric_limits<float>::infinity();
 }
 

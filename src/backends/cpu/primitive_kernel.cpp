@@ -43,7 +43,8 @@ PrimitiveBounds primitive_bounds(const Scene& scene, uint32_t geometry, uint32_t
     };
     if (record.data.x == kernel::GEOMETRY_BILINEAR) {
         for (uint32_t i = 0; i < 4; ++i) {
-            const float* p = &scene.positions[3 * size_t(record.data.w + scene.indices[record.data.z + 4 * primitive + i])];
+            const float* p =
+                &scene.positions[3 * size_t(record.data.w + scene.indices[record.data.z + 4 * primitive + i])];
             extend({p[0], p[1], p[2]});
         }
     } else {
@@ -59,7 +60,8 @@ PrimitiveBounds primitive_bounds(const Scene& scene, uint32_t geometry, uint32_t
         }
         const kernel::TransformRecord& m = scene.transforms[record.ids.w];
         for (int corner = 0; corner < 8; ++corner) {
-            const glm::vec4 p(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z, 1.0f);
+            const glm::vec4 p(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z,
+                              1.0f);
             extend({glm::dot(m.to0, p), glm::dot(m.to1, p), glm::dot(m.to2, p)});
         }
     }

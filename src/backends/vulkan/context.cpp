@@ -30,9 +30,13 @@ vk::raii::Instance make_instance(const vk::raii::Context& loader, ValidationLog*
     std::vector<const char*> layers, extensions;
     if (log) {
         const auto available = loader.enumerateInstanceLayerProperties();
-        const bool found = std::any_of(available.begin(), available.end(),
-                                       [](const auto& layer) { return std::strcmp(layer.layerName, kValidationLayer) == 0; });
-        if (!found) throw MachineError(fmt::format("error: backend.validation=on: the layer {} is not installed (Debian: vulkan-validationlayers)", kValidationLayer));
+        const bool found = std::any_of(available.begin(), available.end(), [](const auto& layer) {
+            return std::strcmp(layer.layerName, kValidationLayer) == 0;
+        });
+        if (!found)
+            throw MachineError(fmt::format(
+                "error: backend.validation=on: the layer {} is not installed (Debian: vulkan-validationlayers)",
+                kValidationLayer));
         layers.push_back(kValidationLayer);
         extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     }
@@ -61,7 +65,8 @@ int preference(vk::PhysicalDeviceType type) {
 // Devices in the order of their numbers: the fastest kind first.
 std::vector<vk::raii::PhysicalDevice> devices_of(const vk::raii::Instance& instance) {
     vk::raii::PhysicalDevices all(instance);
-    std::vector<vk::raii::PhysicalDevice> devices(std::make_move_iterator(all.begin()), std::make_move_iterator(all.end()));
+    std::vector<vk::raii::PhysicalDevice> devices(std::make_move_iterator(all.begin()),
+                                                  std::make_move_iterator(all.end()));
     std::erase_if(devices, [](const auto& device) { return device.getProperties().apiVersion < kApiVersion; });
     std::stable_sort(devices.begin(), devices.end(), [](const auto& a, const auto& b) {
         return preference(a.getProperties().deviceType) < preference(b.getProperties().deviceType);
@@ -71,16 +76,19 @@ std::vector<vk::raii::PhysicalDevice> devices_of(const vk::raii::Instance& insta
 
 bool has_extension(const vk::raii::PhysicalDevice& device, const char* name) {
     const auto extensions = device.enumerateDeviceExtensionProperties();
-    return std::any_of(extensions.begin(), extensions.end(), [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
+    return std::any_of(extensions.begin(), extensions.end(),
+                       [&](const auto& e) { return std::strcmp(e.extensionName, name) == 0; });
 }
 
 bool offers_ray_query(const vk::raii::PhysicalDevice& device) {
-    if (!has_extension(device, VK_KHR_RAY_QUERY_EXTENSION_NAME) || !has_extension(device, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME) ||
+    if (!has_extension(device, VK_KHR_RAY_QUERY_EXTENSION_NAME) ||
+        !has_extension(device, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME) ||
         !has_extension(device, VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME)) {
         return false;
     }
-    const auto features = device.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceRayQueryFeaturesKHR,
-                                              vk::PhysicalDeviceAccelerationStructureFeaturesKHR, vk::PhysicalDeviceVulkan12Features>();
+    const auto features =
+        device.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceRayQueryFeaturesKHR,
+                            vk::PhysicalDeviceAccelerationStructureFeaturesKHR, vk::PhysicalDeviceVulkan12Features>();
     return features.get<vk::PhysicalDeviceRayQueryFeaturesKHR>().rayQuery &&
            features.get<vk::PhysicalDeviceAccelerationStructureFeaturesKHR>().accelerationStructure &&
            features.get<vk::PhysicalDeviceVulkan12Features>().bufferDeviceAddress;
@@ -108,14 +116,16 @@ uint64_t local_memory(const vk::raii::PhysicalDevice& device) {
 }
 
 Capabilities capabilities_of(const vk::raii::PhysicalDevice& device, uint32_t queue_family) {
-    const auto properties = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceMaintenance3Properties>();
+    const auto properties =
+        device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceMaintenance3Properties>();
     const auto& base = properties.get<vk::PhysicalDeviceProperties2>().properties;
     Capabilities can;
     can.is_cpu = base.deviceType == vk::PhysicalDeviceType::eCpu;
     can.is_integrated = base.deviceType == vk::PhysicalDeviceType::eIntegratedGpu;
     can.ray_query = offers_ray_query(device);
     can.int64_atomics = offers_int64_atomics(device);
-    can.timestamps = device.getQueueFamilyProperties()[queue_family].timestampValidBits > 0 && base.limits.timestampPeriod > 0;
+    can.timestamps =
+        device.getQueueFamilyProperties()[queue_family].timestampValidBits > 0 && base.limits.timestampPeriod > 0;
     can.timestamp_ns = base.limits.timestampPeriod;
     can.max_storage_range = base.limits.maxStorageBufferRange;
     can.max_storage_buffers = base.limits.maxPerStageDescriptorStorageBuffers;
@@ -125,7 +135,8 @@ Capabilities capabilities_of(const vk::raii::PhysicalDevice& device, uint32_t qu
     constexpr auto kBoth = Memory::eDeviceLocal | Memory::eHostVisible | Memory::eHostCoherent;
     const auto memory = device.getMemoryProperties();
     for (uint32_t i = 0; i < memory.memoryTypeCount; ++i) {
-        if ((memory.memoryTypes[i].propertyFlags & kBoth) == kBoth) can.has_host_visible_local = can.is_cpu || can.is_integrated;
+        if ((memory.memoryTypes[i].propertyFlags & kBoth) == kBoth)
+            can.has_host_visible_local = can.is_cpu || can.is_integrated;
     }
     return can;
 }
@@ -158,10 +169,19 @@ std::string explain(const vk::Error& error, const std::string& doing) {
     const auto code = system ? static_cast<vk::Result>(system->code().value()) : vk::Result::eErrorUnknown;
     const char* help = "";
     switch (code) {
-        case vk::Result::eErrorDeviceLost: help = ": the device was lost (its driver crashed, or a kernel ran too long); --backend cpu does without it"; break;
+        case vk::Result::eErrorDeviceLost:
+            help =
+                ": the device was lost (its driver crashed, or a kernel ran too long); --backend cpu does without it";
+            break;
         case vk::Result::eErrorOutOfHostMemory: help = ": the machine has no memory left"; break;
-        case vk::Result::eErrorOutOfDeviceMemory: help = ": the device has no memory left; a smaller --resolution or fewer photons per pass need less, and --backend cpu uses the machine's"; break;
-        case vk::Result::eErrorIncompatibleDriver: help = ": no Vulkan driver is installed (Debian: mesa-vulkan-drivers)"; break;
+        case vk::Result::eErrorOutOfDeviceMemory:
+            help =
+                ": the device has no memory left; a smaller --resolution or fewer photons per pass need less, and "
+                "--backend cpu uses the machine's";
+            break;
+        case vk::Result::eErrorIncompatibleDriver:
+            help = ": no Vulkan driver is installed (Debian: mesa-vulkan-drivers)";
+            break;
         default: break;
     }
     return fmt::format("error: Vulkan: {} failed{} ({})", doing, help, error.what());
@@ -185,10 +205,14 @@ Context::Context(const DeviceOptions& options) try {
     instance = make_instance(loader, validation ? &validation_log : nullptr);
     if (validation) messenger = vk::raii::DebugUtilsMessengerEXT(instance, messenger_info(validation_log));
     auto devices = devices_of(instance);
-    if (devices.empty()) throw MachineError("error: there is no Vulkan 1.2 device (Debian: mesa-vulkan-drivers has one that needs no GPU); --backend cpu needs none");
+    if (devices.empty())
+        throw MachineError(
+            "error: there is no Vulkan 1.2 device (Debian: mesa-vulkan-drivers has one that needs no GPU); --backend "
+            "cpu needs none");
     physical = std::move(devices[choose(devices, options.device)]);
     const auto families = physical.getQueueFamilyProperties();
-    const auto family = std::find_if(families.begin(), families.end(), [](const auto& f) { return bool(f.queueFlags & vk::QueueFlagBits::eCompute); });
+    const auto family = std::find_if(families.begin(), families.end(),
+                                     [](const auto& f) { return bool(f.queueFlags & vk::QueueFlagBits::eCompute); });
     if (family == families.end()) throw MachineError("error: the Vulkan device has no queue that computes");
     queue_family = static_cast<uint32_t>(family - families.begin());
     can = capabilities_of(physical, queue_family);
@@ -199,10 +223,12 @@ Context::Context(const DeviceOptions& options) try {
     const vk::DeviceQueueCreateInfo queues({}, queue_family, 1, &priority);
     std::vector<const char*> extensions;
     if (can.ray_query) {
-        extensions = {VK_KHR_RAY_QUERY_EXTENSION_NAME, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME, VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
+        extensions = {VK_KHR_RAY_QUERY_EXTENSION_NAME, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
+                      VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
     }
     vk::StructureChain<vk::DeviceCreateInfo, vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features,
-                       vk::PhysicalDeviceAccelerationStructureFeaturesKHR, vk::PhysicalDeviceRayQueryFeaturesKHR> chain;
+                       vk::PhysicalDeviceAccelerationStructureFeaturesKHR, vk::PhysicalDeviceRayQueryFeaturesKHR>
+        chain;
     chain.get<vk::DeviceCreateInfo>().setQueueCreateInfos(queues).setPEnabledExtensionNames(extensions);
     chain.get<vk::PhysicalDeviceFeatures2>().features.shaderInt64 = can.int64_atomics;
     chain.get<vk::PhysicalDeviceVulkan12Features>().shaderBufferInt64Atomics = can.int64_atomics;
@@ -216,7 +242,9 @@ Context::Context(const DeviceOptions& options) try {
     }
     device = vk::raii::Device(physical, chain.get<vk::DeviceCreateInfo>());
     queue = vk::raii::Queue(device, queue_family, 0);
-    command_pool = vk::raii::CommandPool(device, {vk::CommandPoolCreateFlagBits::eResetCommandBuffer | vk::CommandPoolCreateFlagBits::eTransient, queue_family});
+    command_pool = vk::raii::CommandPool(
+        device,
+        {vk::CommandPoolCreateFlagBits::eResetCommandBuffer | vk::CommandPoolCreateFlagBits::eTransient, queue_family});
     fence_ = vk::raii::Fence(device, vk::FenceCreateInfo());
 } catch (const vk::Error& error) {
     throw MachineError(explain(error, "opening a device"));
@@ -242,7 +270,8 @@ void Context::check_validation() {
 void Context::submit_and_wait(vk::CommandBuffer commands) {
     device.resetFences(*fence_);
     queue.submit(vk::SubmitInfo({}, {}, commands), *fence_);
-    if (device.waitForFences(*fence_, true, UINT64_MAX) != vk::Result::eSuccess) throw MachineError("error: Vulkan: waiting for the device failed");
+    if (device.waitForFences(*fence_, true, UINT64_MAX) != vk::Result::eSuccess)
+        throw MachineError("error: Vulkan: waiting for the device failed");
 }
 
 std::vector<DeviceInfo> list_vulkan_devices() try {
@@ -259,8 +288,9 @@ std::vector<DeviceInfo> list_vulkan_devices() try {
         info.memory_bytes = local_memory(device);
         const auto can = capabilities_of(device, 0);
         info.features["type"] = vk::to_string(properties.deviceType);
-        info.features["vulkan"] = fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(properties.apiVersion), VK_API_VERSION_MINOR(properties.apiVersion),
-                                              VK_API_VERSION_PATCH(properties.apiVersion));
+        info.features["vulkan"] =
+            fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(properties.apiVersion),
+                        VK_API_VERSION_MINOR(properties.apiVersion), VK_API_VERSION_PATCH(properties.apiVersion));
         info.features["ray_query"] = can.ray_query ? "yes" : "no";
         info.features["int64_atomics"] = can.int64_atomics ? "yes" : "no";
         info.features["host_visible"] = can.has_host_visible_local ? "yes" : "no";

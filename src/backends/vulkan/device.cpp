@@ -19,11 +19,15 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 class VulkanDevice final : public Device {
  public:
     explicit VulkanDevice(const DeviceOptions& options)
-        : context_(std::make_shared<Context>(options)), account_(std::make_shared<MemoryAccount>()), cache_(cache_folder(options)) {
+        : context_(std::make_shared<Context>(options)),
+          account_(std::make_shared<MemoryAccount>()),
+          cache_(cache_folder(options)) {
         for (const auto& [key, value] : options.settings) {
-            static const std::vector<std::string> known{"cache", "optimize", "precise", "ray_query", "specialise", "staging", "validation", "workgroup"};
+            static const std::vector<std::string> known{"cache",      "optimize", "precise",    "ray_query",
+                                                        "specialise", "staging",  "validation", "workgroup"};
             if (std::find(known.begin(), known.end(), key) == known.end()) {
-                throw InputError(fmt::format("error: backend vulkan has no setting \"{}\"{}; settings are {}", key, did_you_mean(key, known), list_of(known)));
+                throw InputError(fmt::format("error: backend vulkan has no setting \"{}\"{}; settings are {}", key,
+                                             did_you_mean(key, known), list_of(known)));
             }
         }
         account_->limit = options.max_memory;
@@ -35,11 +39,14 @@ class VulkanDevice final : public Device {
         staged_ = staging == Switch::on || (staging == Switch::automatic && !context_->can.has_host_visible_local);
         const Switch ray_query = read_switch(options, "ray_query", Switch::automatic);
         if (ray_query == Switch::on && !context_->can.ray_query) {
-            throw MachineError(fmt::format("error: backend.ray_query=on: {} ({}) does not offer VK_KHR_ray_query", context_->name, context_->driver));
+            throw MachineError(fmt::format("error: backend.ray_query=on: {} ({}) does not offer VK_KHR_ray_query",
+                                           context_->name, context_->driver));
         }
         // A driver that traces on the CPU is slower at it than the BVH2 in the shader (measured: see docs/backends.md).
-        shader_options_.ray_query = ray_query == Switch::on || (ray_query == Switch::automatic && context_->can.ray_query && !context_->can.is_cpu);
-        unfinished_ = std::make_unique<VulkanBuffer>(context_, account_, sizeof(uint32_t), "the unfinished flag", BufferOptions{.staged = staged_});
+        shader_options_.ray_query = ray_query == Switch::on || (ray_query == Switch::automatic &&
+                                                                context_->can.ray_query && !context_->can.is_cpu);
+        unfinished_ = std::make_unique<VulkanBuffer>(context_, account_, sizeof(uint32_t), "the unfinished flag",
+                                                     BufferOptions{.staged = staged_});
         unfinished_->fill_zero();
         no_scene_.buffers[kUnfinishedBinding] = unfinished_->handle();
         context_->check_validation();
@@ -47,14 +54,16 @@ class VulkanDevice final : public Device {
 
     std::string backend() const override { return "vulkan"; }
     std::string description() const override {
-        return fmt::format("{}, {}{}", context_->name, context_->driver, shader_options_.ray_query ? ", ray query" : "");
+        return fmt::format("{}, {}{}", context_->name, context_->driver,
+                           shader_options_.ray_query ? ", ray query" : "");
     }
     unsigned threads() const override { return 0; }
 
     BufferHandle create_buffer(size_t bytes, std::string_view name) override {
         if (bytes > context_->can.max_storage_range) {
-            throw MachineError(fmt::format("error: Vulkan: {} binds at most {:.0f} MB to a buffer, and {} needs {:.0f} MB", context_->name,
-                                           double(context_->can.max_storage_range) / 1e6, name, double(bytes) / 1e6));
+            throw MachineError(
+                fmt::format("error: Vulkan: {} binds at most {:.0f} MB to a buffer, and {} needs {:.0f} MB",
+                            context_->name, double(context_->can.max_storage_range) / 1e6, name, double(bytes) / 1e6));
         }
         auto buffer = std::make_shared<VulkanBuffer>(context_, account_, bytes, name, BufferOptions{.staged = staged_});
         guarded("clearing a buffer", [&] { buffer->fill_zero(); });
@@ -65,7 +74,8 @@ class VulkanDevice final : public Device {
         const auto start = Clock::now();
         DeviceSceneHandle result;
         guarded("uploading the scene", [&] {
-            result = std::make_shared<VulkanScene>(context_, account_, scene, staged_, shader_options_.ray_query, *unfinished_);
+            result = std::make_shared<VulkanScene>(context_, account_, scene, staged_, shader_options_.ray_query,
+                                                   *unfinished_);
         });
         statistics_.build_s += seconds_since(start);
         return result;
@@ -89,11 +99,14 @@ class VulkanDevice final : public Device {
         return kernel;
     }
 
-    void run(const Kernel& kernel, const DeviceScene* scene, std::span<const BufferHandle> buffers, uint32_t begin, uint32_t count) override {
+    void run(const Kernel& kernel, const DeviceScene* scene, std::span<const BufferHandle> buffers, uint32_t begin,
+             uint32_t count) override {
         const auto& vulkan_kernel = dynamic_cast<const VulkanKernel&>(kernel);
-        if (!scene && vulkan_kernel.uses_scene()) throw std::logic_error(fmt::format("kernel {} needs a scene", vulkan_kernel.file()));
+        if (!scene && vulkan_kernel.uses_scene())
+            throw std::logic_error(fmt::format("kernel {} needs a scene", vulkan_kernel.file()));
         std::vector<vk::Buffer> handles;
-        for (const BufferHandle& buffer : buffers) handles.push_back(buffer ? dynamic_cast<const VulkanBuffer&>(*buffer).handle() : vk::Buffer());
+        for (const BufferHandle& buffer : buffers)
+            handles.push_back(buffer ? dynamic_cast<const VulkanBuffer&>(*buffer).handle() : vk::Buffer());
         guarded(fmt::format("running kernel {}", vulkan_kernel.file()), [&] {
             const SceneBindings& bindings = scene ? dynamic_cast<const VulkanScene&>(*scene).bindings() : no_scene_;
             statistics_.kernel_s[vulkan_kernel.file()] += vulkan_kernel.run(bindings, handles, begin, count);
@@ -111,9 +124,9 @@ class VulkanDevice final : public Device {
     std::vector<std::string> provoke() {
         if (!context_->validation) return {};
         try {
-            const vk::raii::Buffer wrong(context_->device, {{}, 0, vk::BufferUsageFlagBits::eStorageBuffer, vk::SharingMode::eExclusive});
-        } catch (const vk::Error&) {
-        }
+            const vk::raii::Buffer wrong(context_->device,
+                                         {{}, 0, vk::BufferUsageFlagBits::eStorageBuffer, vk::SharingMode::eExclusive});
+        } catch (const vk::Error&) {}
         return context_->validation_log.take();
     }
 
@@ -130,7 +143,8 @@ class VulkanDevice final : public Device {
         for (const uint32_t size : {8u, 16u, 32u, 64u, 128u, 256u}) {
             if (found->second == std::to_string(size)) return size;
         }
-        throw InputError(fmt::format("error: --set backend.workgroup={}: valid are 8, 16, 32, 64, 128 and 256", found->second));
+        throw InputError(
+            fmt::format("error: --set backend.workgroup={}: valid are 8, 16, 32, 64, 128 and 256", found->second));
     }
 
     // Turns Vulkan's errors, and what the validation layers say, into errors that people can act on.
@@ -149,9 +163,12 @@ class VulkanDevice final : public Device {
         unfinished_->download(&flag, sizeof flag, 0);
         if (flag == 0) return;
         unfinished_->fill_zero();
-        throw MachineError(fmt::format("error: kernel {} could not finish a loop within its bound: the driver ended the loop early, or a stack was too small. The image "
-                                       "would be wrong. Mesa before 25 ends loops after 65,535 iterations: take fewer samples at once, or --backend cpu",
-                                       file));
+        throw MachineError(
+            fmt::format("error: kernel {} could not finish a loop within its bound: the driver ended the loop early, "
+                        "or a stack was too small. The image "
+                        "would be wrong. Mesa before 25 ends loops after 65,535 iterations: take fewer samples at "
+                        "once, or --backend cpu",
+                        file));
     }
 
     std::shared_ptr<Context> context_;
@@ -165,8 +182,9 @@ class VulkanDevice final : public Device {
     DeviceStatistics statistics_;
 };
 
-const BackendRegistration vulkan("vulkan", "kernels as compute shaders on any Vulkan 1.2 device",
-                                 [](const DeviceOptions& options) { return std::make_unique<VulkanDevice>(options); }, list_vulkan_devices);
+const BackendRegistration vulkan(
+    "vulkan", "kernels as compute shaders on any Vulkan 1.2 device",
+    [](const DeviceOptions& options) { return std::make_unique<VulkanDevice>(options); }, list_vulkan_devices);
 
 }  // namespace
 

@@ -11,8 +11,8 @@
 namespace lampyris::vulkan {
 namespace {
 
-constexpr double kDispatchSeconds = 0.1;      // aimed at; watchdogs trip at two seconds and more
-constexpr uint32_t kFirstChunk = 4096;        // indices of the first dispatch, when nothing is known yet
+constexpr double kDispatchSeconds = 0.1;  // aimed at; watchdogs trip at two seconds and more
+constexpr uint32_t kFirstChunk = 4096;    // indices of the first dispatch, when nothing is known yet
 constexpr uint32_t kSets = 2;
 
 struct KernelRange {
@@ -20,20 +20,27 @@ struct KernelRange {
 };
 
 vk::DescriptorType type_of(const ShaderBinding& binding) {
-    return binding.acceleration_structure ? vk::DescriptorType::eAccelerationStructureKHR : vk::DescriptorType::eStorageBuffer;
+    return binding.acceleration_structure ? vk::DescriptorType::eAccelerationStructureKHR
+                                          : vk::DescriptorType::eStorageBuffer;
 }
 
 }  // namespace
 
-VulkanKernel::VulkanKernel(std::shared_ptr<Context> context, std::string file, const CompiledShader& shader, uint32_t local_size)
-    : context_(std::move(context)), file_(std::move(file)), spirv_bytes_(shader.spirv.size() * sizeof(uint32_t)),
-      from_cache_(shader.from_cache), local_size_(local_size), bindings_(used_bindings(shader.spirv)) {
+VulkanKernel::VulkanKernel(std::shared_ptr<Context> context, std::string file, const CompiledShader& shader,
+                           uint32_t local_size)
+    : context_(std::move(context)),
+      file_(std::move(file)),
+      spirv_bytes_(shader.spirv.size() * sizeof(uint32_t)),
+      from_cache_(shader.from_cache),
+      local_size_(local_size),
+      bindings_(used_bindings(shader.spirv)) {
     const vk::raii::Device& device = context_->device;
     uint32_t storage_buffers = 0, structures = 0;
     for (uint32_t set = 0; set < kSets; ++set) {
         std::vector<vk::DescriptorSetLayoutBinding> entries;
         for (const ShaderBinding& binding : bindings_) {
-            if (binding.set >= kSets) throw std::logic_error(fmt::format("kernel {} uses descriptor set {}", file_, binding.set));
+            if (binding.set >= kSets)
+                throw std::logic_error(fmt::format("kernel {} uses descriptor set {}", file_, binding.set));
             if (binding.set != set) continue;
             entries.emplace_back(binding.binding, type_of(binding), 1, vk::ShaderStageFlagBits::eCompute);
             (binding.acceleration_structure ? structures : storage_buffers) += 1;
@@ -41,7 +48,8 @@ VulkanKernel::VulkanKernel(std::shared_ptr<Context> context, std::string file, c
         set_layouts_.emplace_back(device, vk::DescriptorSetLayoutCreateInfo({}, entries));
     }
     if (storage_buffers > context_->can.max_storage_buffers) {
-        throw MachineError(fmt::format("error: Vulkan: kernel {} reads {} buffers, and {} binds at most {}", file_, storage_buffers, context_->name, context_->can.max_storage_buffers));
+        throw MachineError(fmt::format("error: Vulkan: kernel {} reads {} buffers, and {} binds at most {}", file_,
+                                       storage_buffers, context_->name, context_->can.max_storage_buffers));
     }
     std::vector<vk::DescriptorSetLayout> layouts;
     for (const auto& layout : set_layouts_) layouts.push_back(*layout);
@@ -53,7 +61,8 @@ VulkanKernel::VulkanKernel(std::shared_ptr<Context> context, std::string file, c
 
     std::vector<vk::DescriptorPoolSize> sizes{{vk::DescriptorType::eStorageBuffer, std::max(storage_buffers, 1u)}};
     if (structures) sizes.emplace_back(vk::DescriptorType::eAccelerationStructureKHR, structures);
-    pool_ = vk::raii::DescriptorPool(device, vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, kSets, sizes));
+    pool_ = vk::raii::DescriptorPool(
+        device, vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, kSets, sizes));
     vk::raii::DescriptorSets sets(device, vk::DescriptorSetAllocateInfo(*pool_, layouts));
     for (auto& set : sets) sets_.push_back(std::move(set));
     if (context_->can.timestamps) queries_ = vk::raii::QueryPool(device, {{}, vk::QueryType::eTimestamp, 2});
@@ -64,7 +73,8 @@ bool VulkanKernel::uses_acceleration_structure() const {
 }
 
 bool VulkanKernel::uses_scene() const {
-    return std::any_of(bindings_.begin(), bindings_.end(), [](const auto& b) { return b.set == 0 && b.binding != kUnfinishedBinding; });
+    return std::any_of(bindings_.begin(), bindings_.end(),
+                       [](const auto& b) { return b.set == 0 && b.binding != kUnfinishedBinding; });
 }
 
 void VulkanKernel::bind(const SceneBindings& scene, std::span<const vk::Buffer> buffers) const {
@@ -77,9 +87,14 @@ void VulkanKernel::bind(const SceneBindings& scene, std::span<const vk::Buffer> 
         if (binding.acceleration_structure) {
             write.setPNext(&structure);
         } else {
-            const bool known = binding.set == 0 ? binding.binding < scene.buffers.size() : binding.binding < buffers.size();
-            const vk::Buffer buffer = !known ? vk::Buffer() : binding.set == 0 ? scene.buffers[binding.binding] : buffers[binding.binding];
-            if (!buffer) throw std::logic_error(fmt::format("kernel {} uses set {}, binding {}, which run() was not given", file_, binding.set, binding.binding));
+            const bool known =
+                binding.set == 0 ? binding.binding < scene.buffers.size() : binding.binding < buffers.size();
+            const vk::Buffer buffer = !known             ? vk::Buffer()
+                                      : binding.set == 0 ? scene.buffers[binding.binding]
+                                                         : buffers[binding.binding];
+            if (!buffer)
+                throw std::logic_error(fmt::format("kernel {} uses set {}, binding {}, which run() was not given",
+                                                   file_, binding.set, binding.binding));
             infos.emplace_back(buffer, 0, VK_WHOLE_SIZE);
             write.setPBufferInfo(&infos.back());
         }
@@ -94,8 +109,10 @@ double VulkanKernel::dispatch(uint32_t begin, uint32_t count) const {
     context_->submit([&](vk::raii::CommandBuffer& commands) {
         using Stage = vk::PipelineStageFlagBits;
         using Access = vk::AccessFlagBits;
-        const vk::MemoryBarrier before(Access::eShaderWrite | Access::eTransferWrite | Access::eHostWrite, Access::eShaderRead | Access::eShaderWrite);
-        commands.pipelineBarrier(Stage::eComputeShader | Stage::eTransfer | Stage::eHost, Stage::eComputeShader, {}, before, {}, {});
+        const vk::MemoryBarrier before(Access::eShaderWrite | Access::eTransferWrite | Access::eHostWrite,
+                                       Access::eShaderRead | Access::eShaderWrite);
+        commands.pipelineBarrier(Stage::eComputeShader | Stage::eTransfer | Stage::eHost, Stage::eComputeShader, {},
+                                 before, {}, {});
         commands.bindPipeline(vk::PipelineBindPoint::eCompute, *pipeline_);
         const std::array<vk::DescriptorSet, kSets> sets{*sets_[0], *sets_[1]};
         commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *layout_, 0, sets, {});
@@ -106,21 +123,25 @@ double VulkanKernel::dispatch(uint32_t begin, uint32_t count) const {
         }
         commands.dispatch(std::max((count + local_size_ - 1) / local_size_, 1u), 1, 1);
         if (timed) commands.writeTimestamp(Stage::eBottomOfPipe, *queries_, 1);
-        const vk::MemoryBarrier after(Access::eShaderWrite, Access::eHostRead | Access::eHostWrite | Access::eTransferRead | Access::eTransferWrite);
+        const vk::MemoryBarrier after(Access::eShaderWrite, Access::eHostRead | Access::eHostWrite |
+                                                                Access::eTransferRead | Access::eTransferWrite);
         commands.pipelineBarrier(Stage::eComputeShader, Stage::eHost | Stage::eTransfer, {}, after, {}, {});
     });
     ++dispatches_;
     const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (!timed) return wall;
-    const auto [result, ticks] = queries_.getResults<uint64_t>(0, 2, 2 * sizeof(uint64_t), sizeof(uint64_t), vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
+    const auto [result, ticks] = queries_.getResults<uint64_t>(
+        0, 2, 2 * sizeof(uint64_t), sizeof(uint64_t), vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
     if (result != vk::Result::eSuccess || ticks[1] < ticks[0]) return wall;
     return std::min(double(ticks[1] - ticks[0]) * context_->can.timestamp_ns * 1e-9, wall);
 }
 
-double VulkanKernel::run(const SceneBindings& scene, std::span<const vk::Buffer> buffers, uint32_t begin, uint32_t count) const {
+double VulkanKernel::run(const SceneBindings& scene, std::span<const vk::Buffer> buffers, uint32_t begin,
+                         uint32_t count) const {
     if (count == 0) return 0;
     bind(scene, buffers);
-    const auto most = static_cast<uint32_t>(std::min<uint64_t>(uint64_t(context_->can.max_groups) * local_size_, UINT32_MAX - local_size_));
+    const auto most = static_cast<uint32_t>(
+        std::min<uint64_t>(uint64_t(context_->can.max_groups) * local_size_, UINT32_MAX - local_size_));
     if (chunk_ == 0) chunk_ = kFirstChunk;
     double seconds = 0;
     for (uint32_t done = 0; done < count;) {
@@ -130,7 +151,8 @@ double VulkanKernel::run(const SceneBindings& scene, std::span<const vk::Buffer>
         done += piece;
         // Towards kDispatchSeconds; a short last piece says little, so only full ones let the size grow.
         const double ratio = std::clamp(kDispatchSeconds / std::max(spent, 1e-6), 0.1, 8.0);
-        if (piece == chunk_ || ratio < 1) chunk_ = static_cast<uint32_t>(std::clamp(double(piece) * ratio, double(local_size_), double(most)));
+        if (piece == chunk_ || ratio < 1)
+            chunk_ = static_cast<uint32_t>(std::clamp(double(piece) * ratio, double(local_size_), double(most)));
     }
     return seconds;
 }

@@ -16,27 +16,33 @@ std::string mebibytes(uint64_t bytes) { return fmt::format("{:.1f} MiB", double(
 
 }  // namespace
 
-VulkanBuffer::VulkanBuffer(std::shared_ptr<Context> context, std::shared_ptr<MemoryAccount> account, size_t bytes, std::string_view name,
-                           BufferOptions options)
+VulkanBuffer::VulkanBuffer(std::shared_ptr<Context> context, std::shared_ptr<MemoryAccount> account, size_t bytes,
+                           std::string_view name, BufferOptions options)
     : context_(std::move(context)), account_(std::move(account)), name_(name), size_(bytes) {
-    const size_t rounded = (std::max<size_t>(bytes, 16) + 15) / 16 * 16;  // fill works on words; a size of 0 is not allowed
+    const size_t rounded =
+        (std::max<size_t>(bytes, 16) + 15) / 16 * 16;  // fill works on words; a size of 0 is not allowed
     const Capabilities& can = context_->can;
     if (rounded > can.max_allocation) {
-        throw MachineError(fmt::format("error: Vulkan: {} allocates at most {} at once, and {} needs {}; --backend cpu has no such limit", context_->name,
-                                       mebibytes(can.max_allocation), name_, mebibytes(rounded)));
+        throw MachineError(fmt::format(
+            "error: Vulkan: {} allocates at most {} at once, and {} needs {}; --backend cpu has no such limit",
+            context_->name, mebibytes(can.max_allocation), name_, mebibytes(rounded)));
     }
     if (account_->limit != 0 && account_->used + rounded > account_->limit) {
-        throw MachineError(fmt::format("error: {} needs {}, which with {} in use is more than --max-memory {}", name_, mebibytes(rounded),
-                                       mebibytes(account_->used), mebibytes(account_->limit)));
+        throw MachineError(fmt::format("error: {} needs {}, which with {} in use is more than --max-memory {}", name_,
+                                       mebibytes(rounded), mebibytes(account_->used), mebibytes(account_->limit)));
     }
     using Usage = vk::BufferUsageFlagBits;
     using Memory = vk::MemoryPropertyFlagBits;
     try {
-        buffer_ = vk::raii::Buffer(context_->device, {{}, rounded, options.usage | Usage::eTransferSrc | Usage::eTransferDst, vk::SharingMode::eExclusive});
+        buffer_ = vk::raii::Buffer(
+            context_->device,
+            {{}, rounded, options.usage | Usage::eTransferSrc | Usage::eTransferDst, vk::SharingMode::eExclusive});
         const auto needs = buffer_.getMemoryRequirements();
         const bool mapped = !options.staged;
-        const uint32_t type = mapped ? context_->memory_type(needs.memoryTypeBits, Memory::eHostVisible | Memory::eHostCoherent, Memory::eDeviceLocal)
-                                     : context_->memory_type(needs.memoryTypeBits, {}, Memory::eDeviceLocal);
+        const uint32_t type =
+            mapped ? context_->memory_type(needs.memoryTypeBits, Memory::eHostVisible | Memory::eHostCoherent,
+                                           Memory::eDeviceLocal)
+                   : context_->memory_type(needs.memoryTypeBits, {}, Memory::eDeviceLocal);
         vk::MemoryAllocateFlagsInfo flags(vk::MemoryAllocateFlagBits::eDeviceAddress);
         vk::MemoryAllocateInfo info(needs.size, type);
         if (options.usage & Usage::eShaderDeviceAddress) info.setPNext(&flags);
@@ -60,7 +66,8 @@ vk::DeviceAddress VulkanBuffer::address() const { return context_->device.getBuf
 
 void VulkanBuffer::check_range(size_t bytes, size_t offset) const {
     if (offset > size_ || bytes > size_ - offset) {
-        throw std::logic_error(fmt::format("buffer {} of {} bytes: {} bytes at {} are outside", name_, size_, bytes, offset));
+        throw std::logic_error(
+            fmt::format("buffer {} of {} bytes: {} bytes at {} are outside", name_, size_, bytes, offset));
     }
 }
 
@@ -71,11 +78,14 @@ void VulkanBuffer::upload(const void* data, size_t bytes, size_t offset) {
         std::memcpy(static_cast<char*>(mapped_) + offset, data, bytes);
         return;
     }
-    VulkanBuffer staging(context_, account_, std::min(bytes, kStagingBytes), "staging of " + name_, {.usage = vk::BufferUsageFlagBits::eTransferSrc});
+    VulkanBuffer staging(context_, account_, std::min(bytes, kStagingBytes), "staging of " + name_,
+                         {.usage = vk::BufferUsageFlagBits::eTransferSrc});
     for (size_t done = 0; done < bytes; done += kStagingBytes) {
         const size_t piece = std::min(kStagingBytes, bytes - done);
         std::memcpy(staging.mapped_, static_cast<const char*>(data) + done, piece);
-        context_->submit([&](vk::raii::CommandBuffer& commands) { commands.copyBuffer(*staging.buffer_, *buffer_, vk::BufferCopy(0, offset + done, piece)); });
+        context_->submit([&](vk::raii::CommandBuffer& commands) {
+            commands.copyBuffer(*staging.buffer_, *buffer_, vk::BufferCopy(0, offset + done, piece));
+        });
     }
 }
 
@@ -86,13 +96,15 @@ void VulkanBuffer::download(void* data, size_t bytes, size_t offset) const {
         std::memcpy(data, static_cast<const char*>(mapped_) + offset, bytes);
         return;
     }
-    VulkanBuffer staging(context_, account_, std::min(bytes, kStagingBytes), "staging of " + name_, {.usage = vk::BufferUsageFlagBits::eTransferDst});
+    VulkanBuffer staging(context_, account_, std::min(bytes, kStagingBytes), "staging of " + name_,
+                         {.usage = vk::BufferUsageFlagBits::eTransferDst});
     for (size_t done = 0; done < bytes; done += kStagingBytes) {
         const size_t piece = std::min(kStagingBytes, bytes - done);
         context_->submit([&](vk::raii::CommandBuffer& commands) {
             commands.copyBuffer(*buffer_, *staging.buffer_, vk::BufferCopy(offset + done, 0, piece));
             const vk::MemoryBarrier barrier(vk::AccessFlagBits::eTransferWrite, vk::AccessFlagBits::eHostRead);
-            commands.pipelineBarrier(vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eHost, {}, barrier, {}, {});
+            commands.pipelineBarrier(vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eHost, {},
+                                     barrier, {}, {});
         });
         std::memcpy(static_cast<char*>(data) + done, staging.mapped_, piece);
     }

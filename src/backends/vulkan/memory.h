@@ -20,7 +20,8 @@ struct BufferOptions {
 class VulkanBuffer final : public Buffer {
  public:
     // Throws MachineError naming the buffer where there is no memory for it.
-    VulkanBuffer(std::shared_ptr<Context> context, std::shared_ptr<MemoryAccount> account, size_t bytes, std::string_view name, BufferOptions options);
+    VulkanBuffer(std::shared_ptr<Context> context, std::shared_ptr<MemoryAccount> account, size_t bytes,
+                 std::string_view name, BufferOptions options);
     ~VulkanBuffer() override;
     VulkanBuffer(const VulkanBuffer&) = delete;
     VulkanBuffer& operator=(const VulkanBuffer&) = delete;

@@ -24,7 +24,8 @@ vk::TransformMatrixKHR matrix_of(const kernel::TransformRecord& m) {
 
 }  // namespace
 
-AccelerationStructures::AccelerationStructures(std::shared_ptr<Context> context, std::shared_ptr<MemoryAccount> account, const Scene& scene, bool staged)
+AccelerationStructures::AccelerationStructures(std::shared_ptr<Context> context, std::shared_ptr<MemoryAccount> account,
+                                               const Scene& scene, bool staged)
     : context_(std::move(context)), account_(std::move(account)), staged_(staged) {
     for (uint32_t g = 0; g < scene.geometries.size(); ++g) geometries_.push_back(build_geometry(scene, g));
     std::vector<vk::AccelerationStructureInstanceKHR> entries;
@@ -44,7 +45,8 @@ AccelerationStructures::AccelerationStructures(std::shared_ptr<Context> context,
             entries.push_back(entry);
         }
     }
-    const auto data = input(entries.data(), entries.size() * sizeof(entries[0]), "the instances of the acceleration structure");
+    const auto data =
+        input(entries.data(), entries.size() * sizeof(entries[0]), "the instances of the acceleration structure");
     vk::AccelerationStructureGeometryInstancesDataKHR instances;
     instances.data.deviceAddress = data->address();
     vk::AccelerationStructureGeometryKHR geometry;
@@ -56,7 +58,8 @@ AccelerationStructures::AccelerationStructures(std::shared_ptr<Context> context,
 AccelerationStructures::~AccelerationStructures() = default;
 
 std::unique_ptr<VulkanBuffer> AccelerationStructures::input(const void* data, size_t bytes, const char* name) {
-    auto buffer = std::make_unique<VulkanBuffer>(context_, account_, bytes, name, BufferOptions{.staged = staged_, .usage = kInputUsage});
+    auto buffer = std::make_unique<VulkanBuffer>(context_, account_, bytes, name,
+                                                 BufferOptions{.staged = staged_, .usage = kInputUsage});
     if (bytes) buffer->upload(data, bytes, 0);
     return buffer;
 }
@@ -70,8 +73,10 @@ AccelerationStructures::Structure AccelerationStructures::build_geometry(const S
         if (count == 0) return {};
         const uint32_t* indices = &scene.indices[record.data.z];
         const uint32_t vertices = *std::max_element(indices, indices + 3 * size_t(count)) + 1;
-        const auto index_data = input(indices, 3 * size_t(count) * sizeof(uint32_t), "triangles for the acceleration structure");
-        const auto vertex_data = input(&scene.positions[3 * size_t(record.data.w)], 3 * size_t(vertices) * sizeof(float), "vertices for the acceleration structure");
+        const auto index_data =
+            input(indices, 3 * size_t(count) * sizeof(uint32_t), "triangles for the acceleration structure");
+        const auto vertex_data = input(&scene.positions[3 * size_t(record.data.w)],
+                                       3 * size_t(vertices) * sizeof(float), "vertices for the acceleration structure");
         vk::AccelerationStructureGeometryTrianglesDataKHR triangles;
         triangles.vertexFormat = vk::Format::eR32G32B32Sfloat;
         triangles.vertexData.deviceAddress = vertex_data->address();
@@ -101,32 +106,42 @@ AccelerationStructures::Structure AccelerationStructures::build_geometry(const S
 }
 
 AccelerationStructures::Structure AccelerationStructures::build(vk::AccelerationStructureTypeKHR type,
-                                                               const vk::AccelerationStructureGeometryKHR& geometry, uint32_t count) {
+                                                                const vk::AccelerationStructureGeometryKHR& geometry,
+                                                                uint32_t count) {
     vk::AccelerationStructureBuildGeometryInfoKHR info;
     info.type = type;
     info.flags = vk::BuildAccelerationStructureFlagBitsKHR::ePreferFastTrace;
     info.mode = vk::BuildAccelerationStructureModeKHR::eBuild;
     info.setGeometries(geometry);
-    const auto sizes = context_->device.getAccelerationStructureBuildSizesKHR(vk::AccelerationStructureBuildTypeKHR::eDevice, info, count);
+    const auto sizes = context_->device.getAccelerationStructureBuildSizesKHR(
+        vk::AccelerationStructureBuildTypeKHR::eDevice, info, count);
     Structure result;
-    result.storage = std::make_unique<VulkanBuffer>(context_, account_, sizes.accelerationStructureSize, "an acceleration structure",
-                                                    BufferOptions{.staged = staged_, .usage = Usage::eShaderDeviceAddress | Usage::eAccelerationStructureStorageKHR});
-    result.structure = vk::raii::AccelerationStructureKHR(context_->device, {{}, result.storage->handle(), 0, sizes.accelerationStructureSize, type});
+    result.storage = std::make_unique<VulkanBuffer>(
+        context_, account_, sizes.accelerationStructureSize, "an acceleration structure",
+        BufferOptions{.staged = staged_,
+                      .usage = Usage::eShaderDeviceAddress | Usage::eAccelerationStructureStorageKHR});
+    result.structure = vk::raii::AccelerationStructureKHR(
+        context_->device, {{}, result.storage->handle(), 0, sizes.accelerationStructureSize, type});
     constexpr vk::DeviceSize kScratchAlignment = 256;  // the largest that the specification lets a device ask for
-    const VulkanBuffer scratch(context_, account_, sizes.buildScratchSize + kScratchAlignment, "building an acceleration structure",
-                               BufferOptions{.staged = staged_, .usage = Usage::eShaderDeviceAddress | Usage::eStorageBuffer});
+    const VulkanBuffer scratch(
+        context_, account_, sizes.buildScratchSize + kScratchAlignment, "building an acceleration structure",
+        BufferOptions{.staged = staged_, .usage = Usage::eShaderDeviceAddress | Usage::eStorageBuffer});
     info.dstAccelerationStructure = *result.structure;
-    info.scratchData.deviceAddress = (scratch.address() + kScratchAlignment - 1) / kScratchAlignment * kScratchAlignment;
+    info.scratchData.deviceAddress =
+        (scratch.address() + kScratchAlignment - 1) / kScratchAlignment * kScratchAlignment;
     const vk::AccelerationStructureBuildRangeInfoKHR range(count, 0, 0, 0);
     context_->submit([&](vk::raii::CommandBuffer& commands) {
         using Stage = vk::PipelineStageFlagBits;
         using Access = vk::AccessFlagBits;
-        const vk::MemoryBarrier before(Access::eTransferWrite | Access::eHostWrite | Access::eAccelerationStructureWriteKHR,
-                                       Access::eAccelerationStructureReadKHR | Access::eAccelerationStructureWriteKHR | Access::eShaderRead);
-        commands.pipelineBarrier(Stage::eTransfer | Stage::eHost | Stage::eAccelerationStructureBuildKHR, Stage::eAccelerationStructureBuildKHR, {}, before, {}, {});
+        const vk::MemoryBarrier before(
+            Access::eTransferWrite | Access::eHostWrite | Access::eAccelerationStructureWriteKHR,
+            Access::eAccelerationStructureReadKHR | Access::eAccelerationStructureWriteKHR | Access::eShaderRead);
+        commands.pipelineBarrier(Stage::eTransfer | Stage::eHost | Stage::eAccelerationStructureBuildKHR,
+                                 Stage::eAccelerationStructureBuildKHR, {}, before, {}, {});
         commands.buildAccelerationStructuresKHR(info, &range);
         const vk::MemoryBarrier after(Access::eAccelerationStructureWriteKHR, Access::eAccelerationStructureReadKHR);
-        commands.pipelineBarrier(Stage::eAccelerationStructureBuildKHR, Stage::eAccelerationStructureBuildKHR | Stage::eComputeShader, {}, after, {}, {});
+        commands.pipelineBarrier(Stage::eAccelerationStructureBuildKHR,
+                                 Stage::eAccelerationStructureBuildKHR | Stage::eComputeShader, {}, after, {}, {});
     });
     vk::AccelerationStructureDeviceAddressInfoKHR address_info;
     address_info.accelerationStructure = *result.structure;

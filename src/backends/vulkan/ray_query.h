@@ -14,7 +14,8 @@ namespace lampyris::vulkan {
 // level's list is not needed: an entry's instance offset (24 bits) holds its instance.
 class AccelerationStructures {
  public:
-    AccelerationStructures(std::shared_ptr<Context> context, std::shared_ptr<MemoryAccount> account, const Scene& scene, bool staged);
+    AccelerationStructures(std::shared_ptr<Context> context, std::shared_ptr<MemoryAccount> account, const Scene& scene,
+                           bool staged);
     ~AccelerationStructures();
     vk::AccelerationStructureKHR top_level() const { return *top_.structure; }
 
@@ -24,7 +25,8 @@ class AccelerationStructures {
         vk::raii::AccelerationStructureKHR structure = nullptr;
         vk::DeviceAddress address = 0;
     };
-    Structure build(vk::AccelerationStructureTypeKHR type, const vk::AccelerationStructureGeometryKHR& geometry, uint32_t count);
+    Structure build(vk::AccelerationStructureTypeKHR type, const vk::AccelerationStructureGeometryKHR& geometry,
+                    uint32_t count);
     Structure build_geometry(const Scene& scene, uint32_t geometry);
     std::unique_ptr<VulkanBuffer> input(const void* data, size_t bytes, const char* name);
 

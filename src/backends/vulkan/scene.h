@@ -14,8 +14,8 @@ class AccelerationStructures;
 class VulkanScene final : public DeviceScene {
  public:
     // With ray_query, acceleration structures of the device instead of the BVH2.
-    VulkanScene(std::shared_ptr<Context> context, std::shared_ptr<MemoryAccount> account, const Scene& scene, bool staged, bool ray_query,
-                const VulkanBuffer& unfinished);
+    VulkanScene(std::shared_ptr<Context> context, std::shared_ptr<MemoryAccount> account, const Scene& scene,
+                bool staged, bool ray_query, const VulkanBuffer& unfinished);
     ~VulkanScene() override;
     const SceneBindings& bindings() const { return bindings_; }
 

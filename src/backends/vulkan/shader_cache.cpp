@@ -55,7 +55,8 @@ std::array<uint64_t, 2> ContentHash::value() const { return {mix(a_), mix(b_ ^ a
 
 std::filesystem::path ShaderCache::default_folder() {
     if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg && *xdg) return std::filesystem::path(xdg) / "lampyris";
-    if (const char* home = std::getenv("HOME"); home && *home) return std::filesystem::path(home) / ".cache" / "lampyris";
+    if (const char* home = std::getenv("HOME"); home && *home)
+        return std::filesystem::path(home) / ".cache" / "lampyris";
     return {};
 }
 
@@ -73,7 +74,9 @@ std::optional<Spirv> ShaderCache::find(const ContentHash& key) const {
     const auto size = std::filesystem::file_size(path(key), error);
     if (error || size != sizeof header + header.words * sizeof(uint32_t)) return std::nullopt;
     Spirv spirv(header.words);
-    if (!file.read(reinterpret_cast<char*>(spirv.data()), static_cast<std::streamsize>(header.words * sizeof(uint32_t)))) return std::nullopt;
+    if (!file.read(reinterpret_cast<char*>(spirv.data()),
+                   static_cast<std::streamsize>(header.words * sizeof(uint32_t))))
+        return std::nullopt;
     if (checksum_of(spirv) != header.checksum) return std::nullopt;
     return spirv;
 }
@@ -88,7 +91,8 @@ void ShaderCache::store(const ContentHash& key, const Spirv& spirv) const {
         std::ofstream file(temporary, std::ios::binary);
         const Header header{kMagic, spirv.size(), checksum_of(spirv)};
         file.write(reinterpret_cast<const char*>(&header), sizeof header);
-        file.write(reinterpret_cast<const char*>(spirv.data()), static_cast<std::streamsize>(spirv.size() * sizeof(uint32_t)));
+        file.write(reinterpret_cast<const char*>(spirv.data()),
+                   static_cast<std::streamsize>(spirv.size() * sizeof(uint32_t)));
         file.close();
         if (!file) {
             std::filesystem::remove(temporary, error);

@@ -28,7 +28,9 @@ std::string with_exact_literals(std::string_view text) {
     std::string out;
     out.reserve(text.size() + text.size() / 8);
     const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
-    const auto is_word = [&](char c) { return is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+    const auto is_word = [&](char c) {
+        return is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+    };
     for (size_t at = 0; at < text.size();) {
         const bool starts = is_digit(text[at]) && (at == 0 || (!is_word(text[at - 1]) && text[at - 1] != '.'));
         if (!starts) {
@@ -36,9 +38,13 @@ std::string with_exact_literals(std::string_view text) {
             continue;
         }
         size_t end = at;
-        while (end < text.size() && (is_word(text[end]) || text[end] == '.' || ((text[end] == '+' || text[end] == '-') && (text[end - 1] == 'e' || text[end - 1] == 'E')))) ++end;
+        while (end < text.size() &&
+               (is_word(text[end]) || text[end] == '.' ||
+                ((text[end] == '+' || text[end] == '-') && (text[end - 1] == 'e' || text[end - 1] == 'E'))))
+            ++end;
         const std::string token(text.substr(at, end - at));
-        const bool is_float = token.back() == 'f' && token.find('.') != std::string::npos && token.find_first_of("xX") == std::string::npos;
+        const bool is_float = token.back() == 'f' && token.find('.') != std::string::npos &&
+                              token.find_first_of("xX") == std::string::npos;
         if (is_float) {
             const std::string digits = fmt::format("{:.17g}", double(std::strtof(token.c_str(), nullptr)));
             out += digits + (digits.find_first_of(".e") == std::string::npos ? ".0f" : "f");
@@ -93,7 +99,8 @@ void add_text(ContentHash& hash, std::string_view text, std::set<std::string_vie
 ContentHash key_of(const std::string& source, const ShaderOptions& options) {
     ContentHash hash;
     hash.add(kPipelineVersion);
-    hash.add(fmt::format("glslang {}.{}.{} {}", GLSLANG_VERSION_MAJOR, GLSLANG_VERSION_MINOR, GLSLANG_VERSION_PATCH, spvSoftwareVersionString()));
+    hash.add(fmt::format("glslang {}.{}.{} {}", GLSLANG_VERSION_MAJOR, GLSLANG_VERSION_MINOR, GLSLANG_VERSION_PATCH,
+                         spvSoftwareVersionString()));
     hash.add(fmt::format("precise {} optimize {}", options.precise, options.optimize));
     std::set<std::string_view> seen;
     add_text(hash, source, seen);
@@ -124,7 +131,8 @@ Spirv compile_glsl(std::string_view kernel_file, const std::string& source) {
     glslang::TProgram program;
     program.addShader(&shader);
     if (!parsed || !program.link(messages)) {
-        throw InputError(fmt::format("error: kernel {} is not valid GLSL:\n{}{}", kernel_file, shader.getInfoLog(), program.getInfoLog()));
+        throw InputError(fmt::format("error: kernel {} is not valid GLSL:\n{}{}", kernel_file, shader.getInfoLog(),
+                                     program.getInfoLog()));
     }
     Spirv spirv;
     glslang::SpvOptions options;
@@ -136,9 +144,10 @@ Spirv compile_glsl(std::string_view kernel_file, const std::string& source) {
 Spirv optimize(std::string_view kernel_file, const Spirv& spirv) {
     spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_2);
     std::string log;
-    optimizer.SetMessageConsumer([&log](spv_message_level_t level, const char*, const spv_position_t&, const char* message) {
-        if (level <= SPV_MSG_WARNING) log += fmt::format("{}\n", message);
-    });
+    optimizer.SetMessageConsumer(
+        [&log](spv_message_level_t level, const char*, const spv_position_t&, const char* message) {
+            if (level <= SPV_MSG_WARNING) log += fmt::format("{}\n", message);
+        });
     // First drop names and what HAS() switches off: inlining it all before dropping it takes nine times as long.
     optimizer.RegisterPass(spvtools::CreateStripDebugInfoPass())
         .RegisterPass(spvtools::CreateCCPPass())

@@ -11,10 +11,10 @@
 namespace lampyris::vulkan {
 
 struct ShaderOptions {
-    uint32_t effects = 0;     // the exact mask: code for other effects is compiled out
-    bool precise = true;      // forbid contraction
+    uint32_t effects = 0;  // the exact mask: code for other effects is compiled out
+    bool precise = true;   // forbid contraction
     bool optimize = true;
-    bool ray_query = false;   // trace with VK_KHR_ray_query instead of the BVH in the shader
+    bool ray_query = false;  // trace with VK_KHR_ray_query instead of the BVH in the shader
     uint32_t local_size = 64;
 };
 

@@ -45,8 +45,9 @@ bool is_float_arithmetic(spv::Op op) {
 }
 
 bool is_annotation(spv::Op op) {
-    return op == spv::OpDecorate || op == spv::OpMemberDecorate || op == spv::OpDecorationGroup || op == spv::OpGroupDecorate ||
-           op == spv::OpGroupMemberDecorate || op == spv::OpDecorateId || op == spv::OpDecorateString || op == spv::OpMemberDecorateString;
+    return op == spv::OpDecorate || op == spv::OpMemberDecorate || op == spv::OpDecorationGroup ||
+           op == spv::OpGroupDecorate || op == spv::OpGroupMemberDecorate || op == spv::OpDecorateId ||
+           op == spv::OpDecorateString || op == spv::OpMemberDecorateString;
 }
 
 // Sections that come before the annotations in a module (SPIR-V specification, 2.4).
@@ -96,10 +97,10 @@ Spirv forbid_contraction(const Spirv& spirv) {
 }
 
 std::vector<ShaderBinding> used_bindings(const Spirv& spirv) {
-    std::map<uint32_t, uint32_t> sets, bindings;    // by variable
-    std::map<uint32_t, uint32_t> pointees;          // pointer type -> type
-    std::set<uint32_t> structures, used;            // acceleration structure types; ids that functions mention
-    std::map<uint32_t, uint32_t> variables;         // variable -> pointer type
+    std::map<uint32_t, uint32_t> sets, bindings;  // by variable
+    std::map<uint32_t, uint32_t> pointees;        // pointer type -> type
+    std::set<uint32_t> structures, used;          // acceleration structure types; ids that functions mention
+    std::map<uint32_t, uint32_t> variables;       // variable -> pointer type
     bool in_function = false;
     for_each_instruction(spirv, [&](spv::Op op, const uint32_t* words, uint32_t count) {
         if (op == spv::OpDecorate && count == 4 && words[2] == spv::DecorationDescriptorSet) sets[words[1]] = words[3];

@@ -60,17 +60,20 @@ void* create_node(RTCThreadLocalAllocator allocator, unsigned, void*) {
     return new (rtcThreadLocalAlloc(allocator, sizeof(BuildNode), alignof(BuildNode))) BuildNode;
 }
 void set_children(void* node, void** children, unsigned count, void*) {
-    for (unsigned i = 0; i < count; ++i) static_cast<BuildNode*>(node)->children[i] = static_cast<BuildNode*>(children[i]);
+    for (unsigned i = 0; i < count; ++i)
+        static_cast<BuildNode*>(node)->children[i] = static_cast<BuildNode*>(children[i]);
 }
 void set_bounds(void* node, const RTCBounds** bounds, unsigned count, void*) {
     for (unsigned i = 0; i < count; ++i) {
         const RTCBounds& b = *bounds[i];
-        static_cast<BuildNode*>(node)->boxes[i] = {{b.lower_x, b.lower_y, b.lower_z}, {b.upper_x, b.upper_y, b.upper_z}};
+        static_cast<BuildNode*>(node)->boxes[i] = {{b.lower_x, b.lower_y, b.lower_z},
+                                                   {b.upper_x, b.upper_y, b.upper_z}};
     }
 }
 void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* items, size_t count, void*) {
     auto* node = new (rtcThreadLocalAlloc(allocator, sizeof(BuildNode), alignof(BuildNode))) BuildNode;
-    auto* copy = static_cast<RTCBuildPrimitive*>(rtcThreadLocalAlloc(allocator, count * sizeof(RTCBuildPrimitive), alignof(RTCBuildPrimitive)));
+    auto* copy = static_cast<RTCBuildPrimitive*>(
+        rtcThreadLocalAlloc(allocator, count * sizeof(RTCBuildPrimitive), alignof(RTCBuildPrimitive)));
     std::copy_n(items, count, copy);
     node->items = copy;
     node->count = static_cast<uint32_t>(count);
@@ -121,7 +124,8 @@ class Builder {
             set_roots[set] = build_tree(items);
         }
         result_.roots.resize(std::max<size_t>(instances, 1));
-        for (size_t i = 0; i < result_.roots.size(); ++i) result_.roots[i] = set_roots[i == 0 ? 0 : scene_.instance_sets[i]];
+        for (size_t i = 0; i < result_.roots.size(); ++i)
+            result_.roots[i] = set_roots[i == 0 ? 0 : scene_.instance_sets[i]];
         return std::move(result_);
     }
 
@@ -138,7 +142,8 @@ class Builder {
         Box result;
         if (box.empty()) return result;
         for (int corner = 0; corner < 8; ++corner) {
-            const vec4 p(corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y, corner & 4 ? box.high.z : box.low.z, 1.0f);
+            const vec4 p(corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
+                         corner & 4 ? box.high.z : box.low.z, 1.0f);
             result.extend(vec3(glm::dot(m.to0, p), glm::dot(m.to1, p), glm::dot(m.to2, p)));
         }
         const vec3 slack = 4e-6f * glm::max(glm::abs(result.low), glm::abs(result.high)) + 1e-30f;
@@ -150,7 +155,8 @@ class Builder {
     std::vector<RTCBuildPrimitive> primitives_of(const GeometrySet& set) const {
         std::vector<RTCBuildPrimitive> items;
         size_t count = 0;
-        for (uint32_t g = 0; g < set.geometry_count; ++g) count += scene_.geometries[set.first_geometry + g].attributes.z;
+        for (uint32_t g = 0; g < set.geometry_count; ++g)
+            count += scene_.geometries[set.first_geometry + g].attributes.z;
         items.reserve(count + 16);
         for (uint32_t g = set.first_geometry; g < set.first_geometry + set.geometry_count; ++g) {
             const kernel::GeometryRecord& geometry = scene_.geometries[g];
@@ -159,7 +165,8 @@ class Builder {
             for (uint32_t p = 0; p < (many ? geometry.attributes.z : 1u); ++p) {
                 Box box;
                 if (triangles) {
-                    for (uint32_t corner = 0; corner < 3; ++corner) box.extend(vertex(scene_, geometry, 3 * p + corner));
+                    for (uint32_t corner = 0; corner < 3; ++corner)
+                        box.extend(vertex(scene_, geometry, 3 * p + corner));
                     // min and max pass over NaN: look at the coordinates' sum, too.
                     for (uint32_t corner = 0; corner < 3; ++corner) {
                         const vec3 v = vertex(scene_, geometry, 3 * p + corner);
@@ -205,9 +212,12 @@ class Builder {
         arguments.setNodeBounds = set_bounds;
         arguments.createLeaf = create_leaf;
         const auto* top = static_cast<const BuildNode*>(rtcBuildBVH(&arguments));
-        if (!top) throw MachineError(fmt::format("error: no memory left while building a BVH of {} primitives", items.size()));
+        if (!top)
+            throw MachineError(
+                fmt::format("error: no memory left while building a BVH of {} primitives", items.size()));
         if (result_.triangles.size() / 3 + items.size() > kMostPrimitives) {
-            throw MachineError(fmt::format("error: the BVH2 holds at most {} primitives; --backend cpu has no such limit", kMostPrimitives));
+            throw MachineError(fmt::format(
+                "error: the BVH2 holds at most {} primitives; --backend cpu has no such limit", kMostPrimitives));
         }
         result_.nodes.reserve(result_.nodes.size() + items.size());
         result_.triangles.reserve(result_.triangles.size() + 3 * items.size());
@@ -239,7 +249,8 @@ class Builder {
     // Instances stand alone (a leaf of count 0): a leaf that mixes becomes a small tree.
     uint32_t leaf_bits(std::span<const RTCBuildPrimitive> items) {
         std::vector<RTCBuildPrimitive> sorted(items.begin(), items.end());
-        const auto middle = std::partition(sorted.begin(), sorted.end(), [](const auto& item) { return item.geomID != kInstanceGeometry; });
+        const auto middle = std::partition(sorted.begin(), sorted.end(),
+                                           [](const auto& item) { return item.geomID != kInstanceGeometry; });
         const auto plain = static_cast<size_t>(middle - sorted.begin());
         if (plain == sorted.size()) return primitives_leaf(sorted);
         if (sorted.size() == 1) return kLeafBit | sorted[0].primID;
@@ -264,7 +275,8 @@ class Builder {
             uint32_t kind = kernel::BVH_QUADRIC;
             if (geometry.data.x == kernel::GEOMETRY_TRIANGLES) {
                 kind = kernel::BVH_TRIANGLE;
-                for (uint32_t corner = 0; corner < 3; ++corner) v[corner] = vertex(scene_, geometry, 3 * item.primID + corner);
+                for (uint32_t corner = 0; corner < 3; ++corner)
+                    v[corner] = vertex(scene_, geometry, 3 * item.primID + corner);
             } else if (geometry.data.x == kernel::GEOMETRY_BILINEAR) {
                 kind = kernel::BVH_BILINEAR;
             }

@@ -83,8 +83,9 @@ void check_plausible(const std::string& path, const OIIO::ImageSpec& spec) {
     // As floats, and once more as it is packed.
     const double needed = 2.0 * sizeof(float) * double(spec.width) * double(spec.height) * double(spec.nchannels);
     if (needed > double(machine_memory()))
-        fail(path, fmt::format("{}x{} pixels of {} channels need {:.1f} GB, and this machine has {:.1f} GB of memory", spec.width, spec.height,
-                               spec.nchannels, needed * 1e-9, double(machine_memory()) * 1e-9));
+        fail(path,
+             fmt::format("{}x{} pixels of {} channels need {:.1f} GB, and this machine has {:.1f} GB of memory",
+                         spec.width, spec.height, spec.nchannels, needed * 1e-9, double(machine_memory()) * 1e-9));
 }
 
 // Colour of an EXR with other primaries than Rec.709's (its attribute "chromaticities") becomes Rec.709's.

@@ -12,6 +12,8 @@ glm::dmat3 xyz_from_rgb(const Primaries& p) {
     return glm::dmat3(columns[0] * scale.x, columns[1] * scale.y, columns[2] * scale.z);
 }
 
-glm::dmat3 rec709_from_rgb(const Primaries& primaries) { return glm::inverse(xyz_from_rgb(kRec709)) * xyz_from_rgb(primaries); }
+glm::dmat3 rec709_from_rgb(const Primaries& primaries) {
+    return glm::inverse(xyz_from_rgb(kRec709)) * xyz_from_rgb(primaries);
+}
 
 }  // namespace lampyris

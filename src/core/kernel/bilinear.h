@@ -26,7 +26,9 @@ FN Patch load_patch(uint geometry, uint primitive) {
     return patch_;
 }
 
-FN vec3 patch_position(IN(Patch) b, vec2 uv) { return lerp3_of(uv.x, lerp3_of(uv.y, b.p00, b.p01), lerp3_of(uv.y, b.p10, b.p11)); }
+FN vec3 patch_position(IN(Patch) b, vec2 uv) {
+    return lerp3_of(uv.x, lerp3_of(uv.y, b.p00, b.p01), lerp3_of(uv.y, b.p10, b.p11));
+}
 FN vec3 patch_dpdu(IN(Patch) b, float v) { return lerp3_of(v, b.p10 - b.p00, b.p11 - b.p01); }
 FN vec3 patch_dpdv(IN(Patch) b, float u) { return lerp3_of(u, b.p01 - b.p00, b.p11 - b.p10); }
 FN vec3 patch_error(IN(Patch) b) {
@@ -37,7 +39,8 @@ FN vec3 patch_error(IN(Patch) b) {
 CONST float PATCH_EDGE = 2e-6f;
 
 // t and v on the patch's line of constant u; keeps the nearer hit.
-FN void patch_candidate(vec3 a00, vec3 a10, vec3 a01, vec3 a11, vec3 d, float u, float t_error, INOUT(float) t, INOUT(vec2) uv) {
+FN void patch_candidate(vec3 a00, vec3 a10, vec3 a01, vec3 a11, vec3 d, float u, float t_error, INOUT(float) t,
+                        INOUT(vec2) uv) {
     if (!(u >= -PATCH_EDGE && u <= 1.0f + PATCH_EDGE)) return;
     float clamped_u = clamp(u, 0.0f, 1.0f);
     vec3 from = lerp3_of(clamped_u, a00, a10);
@@ -65,7 +68,8 @@ FN void patch_candidate(vec3 a00, vec3 a10, vec3 a01, vec3 a11, vec3 d, float u,
 // Tracing Gems, 2019), here about the ray's origin so that patches far from the world's origin lose nothing.
 //
 // Hits up to t_min do not count, nor those within rounding of the ray's origin.
-FN bool bilinear_hit_beyond(uint geometry, uint primitive, vec3 o, vec3 d, float t_min, float t_max, OUT(float) t, OUT(vec2) uv) {
+FN bool bilinear_hit_beyond(uint geometry, uint primitive, vec3 o, vec3 d, float t_min, float t_max, OUT(float) t,
+                            OUT(vec2) uv) {
     Patch b = load_patch(geometry, primitive);
     t = t_max;
     uv = vec2(0.0f);
@@ -87,7 +91,8 @@ FN bool bilinear_hit_beyond(uint geometry, uint primitive, vec3 o, vec3 d, float
     float root = sqrt(discriminant);
     float q = -0.5f * (linear < 0.0f ? linear - root : linear + root);
     // The origin's distance within which a hit is the point that the ray starts from.
-    float extent = max(max(max_component(abs(b.p00)), max_component(abs(b.p10))), max(max_component(abs(b.p01)), max_component(abs(b.p11))));
+    float extent = max(max(max_component(abs(b.p00)), max_component(abs(b.p10))),
+                       max(max_component(abs(b.p01)), max_component(abs(b.p11))));
     float t_error = max(t_min, gamma_bound(10.0f) * (max_component(abs(o)) + extent) / length_of(d));
     if (q == 0.0f) {  // both roots are 0
         patch_candidate(a00, a10, a01, a11, d, 0.0f, t_error, t, uv);

@@ -8,7 +8,8 @@ FN Ray camera_ray(vec2 raster, vec2 u_lens) {
     CameraRecord camera = scene[0].camera;
     vec3 origin = vec3(0.0f);
     vec3 direction = vec3(0.0f, 0.0f, 1.0f);
-    vec3 on_screen = vec3(camera.screen.x + raster.x * camera.screen.z, camera.screen.y + raster.y * camera.screen.w, 1.0f);
+    vec3 on_screen =
+        vec3(camera.screen.x + raster.x * camera.screen.z, camera.screen.y + raster.y * camera.screen.w, 1.0f);
     if (camera.data.x == CAMERA_ORTHOGRAPHIC) {
         origin = vec3(on_screen.x, on_screen.y, 0.0f);
     } else {
@@ -53,7 +54,8 @@ FN vec2 pixel_filter_sample(vec2 u, OUT(float) weight) {
     if (camera.data.y == PIXEL_FILTER_BOX) {
         return vec2((2.0f * u.x - 1.0f) * camera.filtering.x, (2.0f * u.y - 1.0f) * camera.filtering.y);
     }
-    if (camera.data.y == PIXEL_FILTER_TRIANGLE) return vec2(sample_tent(u.x, camera.filtering.x), sample_tent(u.y, camera.filtering.y));
+    if (camera.data.y == PIXEL_FILTER_TRIANGLE)
+        return vec2(sample_tent(u.x, camera.filtering.x), sample_tent(u.y, camera.filtering.y));
     uint count = camera.data.w;
     uint table_x = camera.data.z;
     uint table_y = table_x + 2u * count + 3u;

@@ -45,8 +45,12 @@ inline uint bitfieldReverse(uint x) {
 }
 inline bool isnan(float x) { return x != x; }
 inline bool isinf(float x) { return abs(x) > 3.4028235e38f; }
-inline void atomic_add_u32(uint* place, uint value) { std::atomic_ref<uint>(*place).fetch_add(value, std::memory_order_relaxed); }
-inline void atomic_or_u32(uint* place, uint value) { std::atomic_ref<uint>(*place).fetch_or(value, std::memory_order_relaxed); }
+inline void atomic_add_u32(uint* place, uint value) {
+    std::atomic_ref<uint>(*place).fetch_add(value, std::memory_order_relaxed);
+}
+inline void atomic_or_u32(uint* place, uint value) {
+    std::atomic_ref<uint>(*place).fetch_or(value, std::memory_order_relaxed);
+}
 inline void report_unfinished(uint* flag) {
     if (flag) atomic_or_u32(flag, 1u);
 }

@@ -4,33 +4,33 @@
 #define LAMPYRIS_KERNEL_EFFECTS
 
 // E(constant, bit, name, what it costs)
-#define LAMPYRIS_EFFECTS(E)                                                                                             \
-    E(EFFECT_SMOOTH_NORMALS, 0, "smooth-normals", "interpolates vertex normals at every hit")                           \
-    E(EFFECT_QUADRICS, 1, "quadrics", "intersects spheres, disks and cylinders exactly")                                \
-    E(EFFECT_BILINEAR, 2, "bilinear-patches", "intersects bilinear patches")                                            \
-    E(EFFECT_INSTANCES, 3, "instancing", "a second level in the ray tracer, a transform per instance crossed")          \
-    E(EFFECT_ALPHA, 4, "alpha", "a texture look-up and perhaps another ray per hit on a masked surface")                \
-    E(EFFECT_TEXTURES, 5, "textures", "evaluates texture programs at every hit")                                        \
-    E(EFFECT_IMAGES, 6, "image-textures", "four texel reads per image look-up")                                         \
-    E(EFFECT_BUMP, 7, "bump-or-normal-map", "two more texture look-ups per hit for a bump map, one for a normal map")   \
-    E(EFFECT_CONDUCTOR, 8, "conductor", "complex Fresnel terms")                                                        \
-    E(EFFECT_DIELECTRIC, 9, "dielectric", "reflection and refraction, paths through glass are longer")                  \
-    E(EFFECT_ROUGH, 10, "rough-specular", "microfacet distributions (GGX, visible normals)")                            \
-    E(EFFECT_THIN_DIELECTRIC, 11, "thin-dielectric", "a pane's reflection and transmission")                            \
-    E(EFFECT_DIFFUSE_TRANSMISSION, 12, "diffuse-transmission", "a second diffuse lobe")                                 \
-    E(EFFECT_COAT, 13, "layered-coat", "a random walk between layers for each evaluation and sample")                   \
-    E(EFFECT_MIX, 14, "material-mix", "picks one of two materials at every hit")                                        \
-    E(EFFECT_INTERFACE, 15, "interface", "surfaces that only bound a medium: another ray per crossing")                 \
-    E(EFFECT_AREA_LIGHTS, 16, "area-lights", "samples emissive shapes, and weights emission found by chance (MIS)")     \
-    E(EFFECT_QUADRIC_LIGHTS, 17, "quadric-area-lights", "samples emissive spheres, disks, cylinders and patches")       \
-    E(EFFECT_LIGHT_TEXTURES, 18, "textured-area-lights", "a texture look-up per emission")                              \
-    E(EFFECT_POINT_LIGHTS, 19, "point-and-spot-lights", "a shadow ray to a point")                                      \
-    E(EFFECT_DISTANT_LIGHTS, 20, "distant-lights", "a shadow ray that leaves the scene")                                \
-    E(EFFECT_ENVIRONMENT, 21, "environment", "radiance for escaping rays, shadow rays that leave the scene")            \
-    E(EFFECT_ENVIRONMENT_IMAGE, 22, "environment-image", "importance sampling of an image of directions")               \
-    E(EFFECT_PROJECTION_LIGHTS, 23, "projection-and-goniometric-lights", "an image look-up per shadow ray")             \
-    E(EFFECT_DEPTH_OF_FIELD, 24, "depth-of-field", "a lens sample per camera ray")                                      \
-    E(EFFECT_NOISE, 25, "noise-textures", "gradient noise, eight hashed corners an octave")                             \
+#define LAMPYRIS_EFFECTS(E)                                                                                           \
+    E(EFFECT_SMOOTH_NORMALS, 0, "smooth-normals", "interpolates vertex normals at every hit")                         \
+    E(EFFECT_QUADRICS, 1, "quadrics", "intersects spheres, disks and cylinders exactly")                              \
+    E(EFFECT_BILINEAR, 2, "bilinear-patches", "intersects bilinear patches")                                          \
+    E(EFFECT_INSTANCES, 3, "instancing", "a second level in the ray tracer, a transform per instance crossed")        \
+    E(EFFECT_ALPHA, 4, "alpha", "a texture look-up and perhaps another ray per hit on a masked surface")              \
+    E(EFFECT_TEXTURES, 5, "textures", "evaluates texture programs at every hit")                                      \
+    E(EFFECT_IMAGES, 6, "image-textures", "four texel reads per image look-up")                                       \
+    E(EFFECT_BUMP, 7, "bump-or-normal-map", "two more texture look-ups per hit for a bump map, one for a normal map") \
+    E(EFFECT_CONDUCTOR, 8, "conductor", "complex Fresnel terms")                                                      \
+    E(EFFECT_DIELECTRIC, 9, "dielectric", "reflection and refraction, paths through glass are longer")                \
+    E(EFFECT_ROUGH, 10, "rough-specular", "microfacet distributions (GGX, visible normals)")                          \
+    E(EFFECT_THIN_DIELECTRIC, 11, "thin-dielectric", "a pane's reflection and transmission")                          \
+    E(EFFECT_DIFFUSE_TRANSMISSION, 12, "diffuse-transmission", "a second diffuse lobe")                               \
+    E(EFFECT_COAT, 13, "layered-coat", "a random walk between layers for each evaluation and sample")                 \
+    E(EFFECT_MIX, 14, "material-mix", "picks one of two materials at every hit")                                      \
+    E(EFFECT_INTERFACE, 15, "interface", "surfaces that only bound a medium: another ray per crossing")               \
+    E(EFFECT_AREA_LIGHTS, 16, "area-lights", "samples emissive shapes, and weights emission found by chance (MIS)")   \
+    E(EFFECT_QUADRIC_LIGHTS, 17, "quadric-area-lights", "samples emissive spheres, disks, cylinders and patches")     \
+    E(EFFECT_LIGHT_TEXTURES, 18, "textured-area-lights", "a texture look-up per emission")                            \
+    E(EFFECT_POINT_LIGHTS, 19, "point-and-spot-lights", "a shadow ray to a point")                                    \
+    E(EFFECT_DISTANT_LIGHTS, 20, "distant-lights", "a shadow ray that leaves the scene")                              \
+    E(EFFECT_ENVIRONMENT, 21, "environment", "radiance for escaping rays, shadow rays that leave the scene")          \
+    E(EFFECT_ENVIRONMENT_IMAGE, 22, "environment-image", "importance sampling of an image of directions")             \
+    E(EFFECT_PROJECTION_LIGHTS, 23, "projection-and-goniometric-lights", "an image look-up per shadow ray")           \
+    E(EFFECT_DEPTH_OF_FIELD, 24, "depth-of-field", "a lens sample per camera ray")                                    \
+    E(EFFECT_NOISE, 25, "noise-textures", "gradient noise, eight hashed corners an octave")                           \
     E(EFFECT_ANISOTROPIC, 26, "anisotropic-roughness", "a tangent from the texture coordinates at every hit")
 
 #define LAMPYRIS_EFFECT_CONSTANT(constant, bit, name, cost) CONST uint constant = 1u << bit;
@@ -39,8 +39,10 @@ LAMPYRIS_EFFECTS(LAMPYRIS_EFFECT_CONSTANT)
 CONST uint kAllEffects = 0x07ffffffu;
 // Sets that C++ kernels are built for (KERNEL_CPU_VARIANTS): a scene runs on the smallest one that has all of its effects.
 CONST uint kDiffuseEffects = EFFECT_SMOOTH_NORMALS | EFFECT_AREA_LIGHTS;
-CONST uint kGlassEffects = kDiffuseEffects | EFFECT_QUADRICS | EFFECT_QUADRIC_LIGHTS | EFFECT_CONDUCTOR | EFFECT_DIELECTRIC | EFFECT_ROUGH;
-CONST uint kTexturedEffects = kGlassEffects | EFFECT_TEXTURES | EFFECT_IMAGES | EFFECT_POINT_LIGHTS | EFFECT_DISTANT_LIGHTS |
-                              EFFECT_ENVIRONMENT | EFFECT_ENVIRONMENT_IMAGE | EFFECT_DEPTH_OF_FIELD;
+CONST uint kGlassEffects =
+    kDiffuseEffects | EFFECT_QUADRICS | EFFECT_QUADRIC_LIGHTS | EFFECT_CONDUCTOR | EFFECT_DIELECTRIC | EFFECT_ROUGH;
+CONST uint kTexturedEffects = kGlassEffects | EFFECT_TEXTURES | EFFECT_IMAGES | EFFECT_POINT_LIGHTS |
+                              EFFECT_DISTANT_LIGHTS | EFFECT_ENVIRONMENT | EFFECT_ENVIRONMENT_IMAGE |
+                              EFFECT_DEPTH_OF_FIELD;
 
 #endif

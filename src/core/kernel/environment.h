@@ -39,8 +39,8 @@ FN float pdf_image_distribution(uint offset, uint width, uint height, vec2 st) {
     uint y = min(uint(max(st.y, 0.0f) * float(height)), height - 1u);
     uint x = min(uint(max(st.x, 0.0f) * float(width)), width - 1u);
     uint row = offset + height + 1u + y * (width + 1u) + x;
-    return (distributions[row + 1u] - distributions[row]) * (distributions[offset + y + 1u] - distributions[offset + y]) *
-           (float(width) * float(height));
+    return (distributions[row + 1u] - distributions[row]) *
+           (distributions[offset + y + 1u] - distributions[offset + y]) * (float(width) * float(height));
 }
 
 // How much solid angle in light space a unit of solid angle about the world's direction d is.

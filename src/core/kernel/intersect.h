@@ -9,7 +9,9 @@ CONST uint MAX_PASSED_SURFACES = 100000u;
 CONST float SHADOW_EPSILON = 1e-4f;
 
 // Texture coordinates and derivatives are for textures, masks, bump maps and anisotropic roughness only.
-FN bool surface_needs_uv() { return CALLED_FOR(EFFECT_TEXTURES | EFFECT_ALPHA | EFFECT_BUMP | EFFECT_ANISOTROPIC | EFFECT_LIGHT_TEXTURES); }
+FN bool surface_needs_uv() {
+    return CALLED_FOR(EFFECT_TEXTURES | EFFECT_ALPHA | EFFECT_BUMP | EFFECT_ANISOTROPIC | EFFECT_LIGHT_TEXTURES);
+}
 
 // The triangle's point that the ray meets (Möller and Trumbore 1997 for the barycentrics), in the geometry set's space.
 FN void triangle_surface(uint geometry, uint primitive, vec3 o, vec3 d, INOUT(Surface) s) {

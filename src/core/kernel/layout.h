@@ -17,17 +17,22 @@ CONST uint GEOMETRY_CYLINDER = 4u;  // params: radius, zmin, zmax, phimax
 
 CONST uint GEOMETRY_HAS_NORMALS = 1u;
 CONST uint GEOMETRY_HAS_UVS = 2u;
-CONST uint GEOMETRY_FLIP = 4u;  // ReverseOrientation xor a handedness-swapping transform: the geometric normal turns round
-CONST uint GEOMETRY_REVERSED = 8u;  // ReverseOrientation alone: vertex normals are negated on loading, this tells quadrics
+CONST uint GEOMETRY_FLIP =
+    4u;  // ReverseOrientation xor a handedness-swapping transform: the geometric normal turns round
+CONST uint GEOMETRY_REVERSED =
+    8u;  // ReverseOrientation alone: vertex normals are negated on loading, this tells quadrics
 
 // One record per shape. Triangles and patches are in world space (in object-definition space inside an instanced object);
 // quadrics are in their own space, with a transform.
 struct GeometryRecord {
-    uvec4 data;        // kind, flags, first entry of `indices` (3 a triangle, 4 a patch), first vertex (indices are relative to it)
-    uvec4 ids;         // material, first light (light of primitive i is first + i) or NONE, alpha texture or NONE, transform (quadrics)
-    uvec4 attributes;  // first vertex in `normals`, first vertex in `uvs`, number of primitives, interior medium << 16 | exterior
-    vec4 params;       // see the kinds
-    vec4 alpha;        // x: constant alpha (used where the alpha texture is NONE); below 1 only where EFFECT_ALPHA
+    uvec4
+        data;  // kind, flags, first entry of `indices` (3 a triangle, 4 a patch), first vertex (indices are relative to it)
+    uvec4
+        ids;  // material, first light (light of primitive i is first + i) or NONE, alpha texture or NONE, transform (quadrics)
+    uvec4
+        attributes;  // first vertex in `normals`, first vertex in `uvs`, number of primitives, interior medium << 16 | exterior
+    vec4 params;  // see the kinds
+    vec4 alpha;   // x: constant alpha (used where the alpha texture is NONE); below 1 only where EFFECT_ALPHA
 };
 
 // Rows of an affine transform and of its inverse.
@@ -49,16 +54,17 @@ struct InstanceRecord {
 // Binary BVH node that holds both children's boxes (64 bytes). A child is an inner node (its index), or has the sign bit: a
 // leaf, count << 24 | first primitive, or with a count of 0 an instance (its index).
 CONST uint BVH_LEAF = 0x80000000u;
-CONST uint BVH_DEPTH = 40u;            // of a tree, at most, in a scene without instances; and what the stack must hold
-CONST uint BVH_DEPTH_INSTANCES = 31u;  // of each tree in a scene with instances (a mixed leaf adds up to 3 to the world's)
+CONST uint BVH_DEPTH = 40u;  // of a tree, at most, in a scene without instances; and what the stack must hold
+CONST uint BVH_DEPTH_INSTANCES =
+    31u;  // of each tree in a scene with instances (a mixed leaf adds up to 3 to the world's)
 // A primitive is three vec4: v0 | geometry, v1 | primitive, v2 | one of these kinds.
 CONST uint BVH_TRIANGLE = 0u;
 CONST uint BVH_QUADRIC = 1u;
 CONST uint BVH_BILINEAR = 2u;
 
 struct BvhNode {
-    vec4 left_min;   // w: left child's bits
-    vec4 left_max;   // w: right child's bits
+    vec4 left_min;  // w: left child's bits
+    vec4 left_max;  // w: right child's bits
     vec4 right_min;
     vec4 right_max;
 };
@@ -75,23 +81,24 @@ CONST uint MATERIAL_COATED_DIFFUSE = 6u;
 CONST uint MATERIAL_COATED_CONDUCTOR = 7u;
 CONST uint MATERIAL_MIX = 8u;
 
-CONST uint MATERIAL_REMAP = 1u;            // roughness is remapped (alpha = sqrt(roughness)) in the kernel, after textures
-CONST uint MATERIAL_USES_REFLECTANCE = 2u; // conductor: color0 is `reflectance`, from which eta = 1 and k follow
-CONST uint MATERIAL_REMAP_COAT = 4u;       // as MATERIAL_REMAP, for the interface's roughness
+CONST uint MATERIAL_REMAP = 1u;  // roughness is remapped (alpha = sqrt(roughness)) in the kernel, after textures
+CONST uint MATERIAL_USES_REFLECTANCE = 2u;  // conductor: color0 is `reflectance`, from which eta = 1 and k follow
+CONST uint MATERIAL_REMAP_COAT = 4u;        // as MATERIAL_REMAP, for the interface's roughness
 CONST uint MATERIAL_ENERGY_COMPENSATION = 8u;
 CONST uint MATERIAL_EXACT_COAT = 16u;  // coats: unbiased weights where pbrt's are not (bsdf_layered.h)
 
 // A slot's value is its constant, or where its texture is not NONE, the texture.
 struct MaterialRecord {
-    uvec4 data;      // kind, flags, bump (displacement) texture or NONE, normal-map image or NONE
-    uvec4 textures;  // textures of color0, color1, color2, of floats.x
-    uvec4 textures2; // textures of floats.y, floats2.x, floats2.y, floats2.z
-    vec4 color0;     // reflectance; conductor: eta or reflectance; w: scale (diffusetransmission)
-    vec4 color1;     // conductor: k; diffusetransmission: transmittance
-    vec4 color2;     // coats: albedo of the medium between the layers
-    vec4 floats;     // roughness u, v (of the base for coatedconductor, of the coat for coateddiffuse); z: eta (dielectrics, coats); w: g
-    vec4 floats2;    // x: thickness of the coat; y, z: roughness u, v of coatedconductor's coat; w: unused
-    uvec4 extra;     // coats: maxdepth, nsamples; mix: the two materials (x, y), amount texture (z; NONE: floats.x)
+    uvec4 data;       // kind, flags, bump (displacement) texture or NONE, normal-map image or NONE
+    uvec4 textures;   // textures of color0, color1, color2, of floats.x
+    uvec4 textures2;  // textures of floats.y, floats2.x, floats2.y, floats2.z
+    vec4 color0;      // reflectance; conductor: eta or reflectance; w: scale (diffusetransmission)
+    vec4 color1;      // conductor: k; diffusetransmission: transmittance
+    vec4 color2;      // coats: albedo of the medium between the layers
+    vec4
+        floats;  // roughness u, v (of the base for coatedconductor, of the coat for coateddiffuse); z: eta (dielectrics, coats); w: g
+    vec4 floats2;  // x: thickness of the coat; y, z: roughness u, v of coatedconductor's coat; w: unused
+    uvec4 extra;   // coats: maxdepth, nsamples; mix: the two materials (x, y), amount texture (z; NONE: floats.x)
 };
 
 // ---- Textures --------------------------------------------------------------------------------------------------------
@@ -99,20 +106,20 @@ struct MaterialRecord {
 // A texture is a program in postfix order over a stack of colours (floats use all three channels alike, and read the first), so
 // that a texture of textures needs no recursion: data.x is the operation, and the last operation of a program has data.y & 1.
 // Operations below TEXTURE_CHECKERBOARD push a value, the others replace the values that they pop by one.
-CONST uint TEXTURE_CONSTANT = 0u;       // a
-CONST uint TEXTURE_IMAGE = 1u;          // image data.z at the mapped uv; a: scale; data.w & 1: invert
-CONST uint TEXTURE_FBM = 2u;            // a.x: roughness; data.w: octaves; data.z: first of Perlin's permutation in `texels`
-CONST uint TEXTURE_WRINKLED = 3u;       // the same
-CONST uint TEXTURE_WINDY = 4u;          // the same, without a roughness
-CONST uint TEXTURE_MARBLE = 5u;         // the same, with a: roughness, scale, variation
-CONST uint TEXTURE_CHECKERBOARD = 8u;   // of tex1, tex2
-CONST uint TEXTURE_SCALE = 9u;          // of tex, scale
-CONST uint TEXTURE_MIX = 10u;           // of tex1, tex2, amount
-CONST uint TEXTURE_DIRECTION_MIX = 11u; // of tex1, tex2; a: unit direction in world space
-CONST uint TEXTURE_DOTS = 12u;          // of inside, outside; data.z: the permutation
-CONST uint TEXTURE_BILERP = 13u;        // of v00, v01, v10, v11
-CONST uint TEXTURE_STACK = 16u;         // the depth and
-CONST uint TEXTURE_LENGTH = 1024u;      // the number of operations that the host guarantees not to exceed
+CONST uint TEXTURE_CONSTANT = 0u;  // a
+CONST uint TEXTURE_IMAGE = 1u;     // image data.z at the mapped uv; a: scale; data.w & 1: invert
+CONST uint TEXTURE_FBM = 2u;       // a.x: roughness; data.w: octaves; data.z: first of Perlin's permutation in `texels`
+CONST uint TEXTURE_WRINKLED = 3u;  // the same
+CONST uint TEXTURE_WINDY = 4u;     // the same, without a roughness
+CONST uint TEXTURE_MARBLE = 5u;    // the same, with a: roughness, scale, variation
+CONST uint TEXTURE_CHECKERBOARD = 8u;    // of tex1, tex2
+CONST uint TEXTURE_SCALE = 9u;           // of tex, scale
+CONST uint TEXTURE_MIX = 10u;            // of tex1, tex2, amount
+CONST uint TEXTURE_DIRECTION_MIX = 11u;  // of tex1, tex2; a: unit direction in world space
+CONST uint TEXTURE_DOTS = 12u;           // of inside, outside; data.z: the permutation
+CONST uint TEXTURE_BILERP = 13u;         // of v00, v01, v10, v11
+CONST uint TEXTURE_STACK = 16u;          // the depth and
+CONST uint TEXTURE_LENGTH = 1024u;       // the number of operations that the host guarantees not to exceed
 
 CONST uint MAPPING_NONE = 0u;         // of operations that are the same everywhere
 CONST uint MAPPING_UV = 1u;           // m0: su, sv, du, dv
@@ -122,7 +129,7 @@ CONST uint MAPPING_PLANAR = 4u;       // m0: vs, ds; m1: vt, dt, with the textur
 CONST uint MAPPING_SPACE = 5u;        // rows; not (s, t) but the point in the texture's space
 
 struct TextureOp {
-    uvec4 data;   // operation, flags (1: last) | mapping << 8, image, option
+    uvec4 data;  // operation, flags (1: last) | mapping << 8, image, option
     vec4 a;
     vec4 m0;
     vec4 m1;
@@ -135,26 +142,27 @@ CONST uint WRAP_CLAMP = 2u;
 CONST uint WRAP_OCTAHEDRAL = 3u;
 CONST uint FILTER_POINT = 0u;
 CONST uint FILTER_BILINEAR = 1u;
-CONST uint TEXEL_RGBA8 = 0u;        // one uint a texel, R lowest; decoded by a table
-CONST uint TEXEL_R8 = 1u;           // four texels a uint, lowest first; decoded by a table
-CONST uint TEXEL_RGBA16F = 2u;      // two uints
-CONST uint TEXEL_RGB32F = 3u;       // three uints
-CONST uint TEXEL_R32F = 4u;         // one uint
+CONST uint TEXEL_RGBA8 = 0u;    // one uint a texel, R lowest; decoded by a table
+CONST uint TEXEL_R8 = 1u;       // four texels a uint, lowest first; decoded by a table
+CONST uint TEXEL_RGBA16F = 2u;  // two uints
+CONST uint TEXEL_RGB32F = 3u;   // three uints
+CONST uint TEXEL_R32F = 4u;     // one uint
 
 // Texels lie row by row from the top.
 struct ImageRecord {
-    uvec4 data;    // first uint in `texels`, width, height, texel format | wrap << 8 | filter << 16
-    uvec4 decode;  // x: first of 256 floats (as bits) in `texels`: what a byte of an 8-bit format means, in linear light
+    uvec4 data;  // first uint in `texels`, width, height, texel format | wrap << 8 | filter << 16
+    uvec4
+        decode;  // x: first of 256 floats (as bits) in `texels`: what a byte of an 8-bit format means, in linear light
 };
 
 // ---- Lights ----------------------------------------------------------------------------------------------------------
 
 CONST uint LIGHT_TRIANGLE = 0u;
-CONST uint LIGHT_GEOMETRY = 1u;    // a quadric or a bilinear patch: ids say which
+CONST uint LIGHT_GEOMETRY = 1u;  // a quadric or a bilinear patch: ids say which
 CONST uint LIGHT_POINT = 2u;
 CONST uint LIGHT_SPOT = 3u;
 CONST uint LIGHT_DISTANT = 4u;
-CONST uint LIGHT_INFINITE = 5u;    // constant
+CONST uint LIGHT_INFINITE = 5u;  // constant
 CONST uint LIGHT_INFINITE_IMAGE = 6u;
 CONST uint LIGHT_PROJECTION = 7u;
 CONST uint LIGHT_GONIOMETRIC = 8u;
@@ -171,17 +179,21 @@ CONST uint LIGHT_TWO_SIDED = 1u;
 // Transforms of lights are the directive's own: that a goniometric image's pole is the light's y axis, and that images have
 // their first row on top, is the kernels' business.
 struct LightRecord {
-    uvec4 data;      // kind, flags, image or emission texture or NONE, transform (light space) or NONE
-    uvec4 ids;       // area lights: geometry, primitive, instance (0); infinite images: offset of the distribution, width, height
-    vec4 emission;   // rgb: radiance, intensity or irradiance, or the scale of the texture or image; w: the probability of choosing this light
-    vec4 v0;         // triangle: p0, w: area. point, spot, ...: position. distant: unit direction towards the light, w: unused
-    vec4 v1;         // triangle: p1 (order of the indices). spot: unit axis (away from the light), w: cosine at which the falloff begins
-    vec4 v2;         // triangle: p2. spot: w: cosine at which it ends. projection: the picture's xmin, ymin, xmax, ymax at z = 1 in light space
+    uvec4 data;  // kind, flags, image or emission texture or NONE, transform (light space) or NONE
+    uvec4
+        ids;  // area lights: geometry, primitive, instance (0); infinite images: offset of the distribution, width, height
+    vec4
+        emission;  // rgb: radiance, intensity or irradiance, or the scale of the texture or image; w: the probability of choosing this light
+    vec4 v0;  // triangle: p0, w: area. point, spot, ...: position. distant: unit direction towards the light, w: unused
+    vec4
+        v1;  // triangle: p1 (order of the indices). spot: unit axis (away from the light), w: cosine at which the falloff begins
+    vec4
+        v2;  // triangle: p2. spot: w: cosine at which it ends. projection: the picture's xmin, ymin, xmax, ymax at z = 1 in light space
 };
 
 // ---- Camera, film, scene ---------------------------------------------------------------------------------------------
 
-CONST uint SAMPLER_SOBOL = 0u;        // padded two-dimensional Owen-scrambled Sobol
+CONST uint SAMPLER_SOBOL = 0u;  // padded two-dimensional Owen-scrambled Sobol
 CONST uint SAMPLER_INDEPENDENT = 1u;
 CONST uint CAMERA_PERSPECTIVE = 0u;
 CONST uint CAMERA_ORTHOGRAPHIC = 1u;
@@ -193,21 +205,23 @@ CONST uint PIXEL_FILTER_GAUSSIAN = 2u;  // and the other smooth ones: sampled fr
 // the n + 1 nodes (no interval changes its sign), the n + 1 numbers of the CDF of its absolute value, linear between nodes, and
 // the integral of the absolute value over the filter's.
 struct CameraRecord {
-    uvec4 data;   // kind, filter kind, offset of the filter's tables in `distributions`, their number of intervals n
-    uvec4 film;   // full resolution x, y, and the crop window's origin x, y
-    vec4 to0;     // rows of world-from-camera (camera space: +x right, +y up, +z forward, as pbrt's)
+    uvec4 data;  // kind, filter kind, offset of the filter's tables in `distributions`, their number of intervals n
+    uvec4 film;  // full resolution x, y, and the crop window's origin x, y
+    vec4 to0;    // rows of world-from-camera (camera space: +x right, +y up, +z forward, as pbrt's)
     vec4 to1;
     vec4 to2;
     vec4 screen;  // raster to camera space at z = 1: x = screen.x + px * screen.z, y = screen.y + py * screen.w
-    vec4 lens;    // x: lens radius, y: focal distance, z: clamp of a sample's largest component (0: none), w: imaging ratio
+    vec4
+        lens;  // x: lens radius, y: focal distance, z: clamp of a sample's largest component (0: none), w: imaging ratio
     vec4 filtering;  // x, y: radius; z, w: parameters
 };
 
 struct SceneRecord {
     CameraRecord camera;
-    uvec4 lights;   // number of lights, number of infinite ones, offset of the choosing CDF in `distributions` (count + 1 floats), unused
-    uvec4 counts;   // geometries, instances, root node of the top-level BVH, effects that the scene calls for
-    vec4 bounds;    // world's bounding sphere: centre, radius
+    uvec4
+        lights;  // number of lights, number of infinite ones, offset of the choosing CDF in `distributions` (count + 1 floats), unused
+    uvec4 counts;  // geometries, instances, root node of the top-level BVH, effects that the scene calls for
+    vec4 bounds;   // world's bounding sphere: centre, radius
 };
 
 // ---- Film ------------------------------------------------------------------------------------------------------------
@@ -215,12 +229,12 @@ struct SceneRecord {
 // Sums are compensated (Neumaier 1974), sample by sample, so that they do not depend on how passes are cut into dispatches,
 // and a million samples lose nothing.
 struct FilmPixel {
-    vec4 sum;       // filter-weighted radiance, sum of the weights
-    vec4 low;       // what rounding dropped from `sum`
-    vec4 squares;   // sums of squares of the weighted radiance, for the variance; w: what the first hits' depth sums to
-    vec4 albedo;    // sum over samples; w: number of samples that hit something
-    vec4 normal;    // sum over samples
-    uvec4 counts;   // samples, rays, non-finite samples, pass of the first non-finite sample
+    vec4 sum;      // filter-weighted radiance, sum of the weights
+    vec4 low;      // what rounding dropped from `sum`
+    vec4 squares;  // sums of squares of the weighted radiance, for the variance; w: what the first hits' depth sums to
+    vec4 albedo;   // sum over samples; w: number of samples that hit something
+    vec4 normal;   // sum over samples
+    uvec4 counts;  // samples, rays, non-finite samples, pass of the first non-finite sample
 };
 
 // The part of the image that is rendered, in pixels of the full film, and which samples.

@@ -101,7 +101,8 @@ FN vec3 point_light_intensity(IN(LightRecord) light, vec3 w) {
         vec2 st;
         if (light.data.x == LIGHT_PROJECTION) {
             if (!(d.z >= 1e-3f)) return vec3(0.0f);
-            st = vec2((d.x / d.z - light.v2.x) / (light.v2.z - light.v2.x), (light.v2.w - d.y / d.z) / (light.v2.w - light.v2.y));
+            st = vec2((d.x / d.z - light.v2.x) / (light.v2.z - light.v2.x),
+                      (light.v2.w - d.y / d.z) / (light.v2.w - light.v2.y));
             if (!(st.x >= 0.0f && st.x <= 1.0f && st.y >= 0.0f && st.y <= 1.0f)) return vec3(0.0f);
         } else {
             st = square_from_direction(vec3(d.x, d.z, d.y));  // the image's pole is the light's y axis

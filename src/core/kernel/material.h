@@ -40,7 +40,8 @@ FN void material_resolve(INOUT(Surface) s, vec3 wo) {
     for (uint i = 0u; i < MIX_DEPTH; ++i) {
         if (materials[s.material].data.x != MATERIAL_MIX) return;
         uvec4 extra = materials[s.material].extra;
-        float amount = extra.z == NONE ? materials[s.material].floats.x : texture_float(extra.z, surface_texture_context(s));
+        float amount =
+            extra.z == NONE ? materials[s.material].floats.x : texture_float(extra.z, surface_texture_context(s));
         s.material = mix_choice(s.position, wo, s.material) < amount ? extra.y : extra.x;
     }
     REPORT_UNFINISHED();
@@ -86,7 +87,8 @@ FN void apply_normal_map(INOUT(Surface) s, uint image) {
 // call: a GLSL compiler inlines each evaluation of a program.
 FN void material_textures(INOUT(MaterialRecord) m, INOUT(Surface) s) {
     bool bumped = HAS(EFFECT_BUMP) && m.data.z != NONE;
-    uint all = m.textures.x & m.textures.y & m.textures.z & m.textures.w & m.textures2.x & m.textures2.y & m.textures2.z & m.textures2.w;
+    uint all = m.textures.x & m.textures.y & m.textures.z & m.textures.w & m.textures2.x & m.textures2.y &
+               m.textures2.z & m.textures2.w;
     bool textured = HAS(EFFECT_TEXTURES) && all != NONE;
     if (!bumped && !textured) return;
     TextureContext here = surface_texture_context(s);
@@ -104,24 +106,33 @@ FN void material_textures(INOUT(MaterialRecord) m, INOUT(Surface) s) {
             c.uv = vec2(here.uv.x, here.uv.y + BUMP_STEP);
         }
         vec3 value = texture_color(program, c);
-        if (job == 0u) displaced.x = value.x;
-        else if (job == 1u) displaced.y = value.x;
-        else if (job == 2u) displaced.z = value.x;
-        else if (job == 3u) m.color0 = vec4(value.x, value.y, value.z, m.color0.w);
-        else if (job == 4u) m.color1 = vec4(value.x, value.y, value.z, m.color1.w);
-        else if (job == 5u) m.color2 = vec4(value.x, value.y, value.z, m.color2.w);
-        else if (job == 6u) m.floats.x = value.x;
-        else if (job == 7u) m.floats.y = value.x;
-        else if (job == 8u) m.floats2.x = value.x;
-        else if (job == 9u) m.floats2.y = value.x;
-        else m.floats2.z = value.x;
+        if (job == 0u)
+            displaced.x = value.x;
+        else if (job == 1u)
+            displaced.y = value.x;
+        else if (job == 2u)
+            displaced.z = value.x;
+        else if (job == 3u)
+            m.color0 = vec4(value.x, value.y, value.z, m.color0.w);
+        else if (job == 4u)
+            m.color1 = vec4(value.x, value.y, value.z, m.color1.w);
+        else if (job == 5u)
+            m.color2 = vec4(value.x, value.y, value.z, m.color2.w);
+        else if (job == 6u)
+            m.floats.x = value.x;
+        else if (job == 7u)
+            m.floats.y = value.x;
+        else if (job == 8u)
+            m.floats2.x = value.x;
+        else if (job == 9u)
+            m.floats2.y = value.x;
+        else
+            m.floats2.z = value.x;
     }
     if (bumped) apply_bump(s, displaced);
 }
 
-FN vec2 roughness_alpha(float u, float v, bool remap) {
-    return remap ? vec2(safe_sqrt(u), safe_sqrt(v)) : vec2(u, v);
-}
+FN vec2 roughness_alpha(float u, float v, bool remap) { return remap ? vec2(safe_sqrt(u), safe_sqrt(v)) : vec2(u, v); }
 
 // The Bsdf at s, and the frame in which it is meant: z is the shading normal. wo, the direction that light leaves in, and the
 // frame's axes are in world space. s.ns and s.dpdu are those of the bump or normal map afterwards, s.material is never a mix.
@@ -155,17 +166,21 @@ FN Bsdf material_bsdf(INOUT(Surface) s, vec3 wo, OUT(Frame) frame) {
         bool on_metal = kind == MATERIAL_COATED_CONDUCTOR;
         vec2 coat_alpha = alpha;
         if (on_metal) coat_alpha = roughness_alpha(m.floats2.y, m.floats2.z, (flags & MATERIAL_REMAP_COAT) != 0u);
-        Bsdf coat = bsdf_coat(m.floats.z, coat_alpha, m.floats2.x, vec3(m.color2.x, m.color2.y, m.color2.z), m.floats.w, m.extra.x,
-                              m.extra.y);
-        if (on_metal) b = bsdf_coated_conductor(coat, color0, color1, alpha, flags);
-        else b = bsdf_coated_diffuse(coat, color0, flags);
+        Bsdf coat = bsdf_coat(m.floats.z, coat_alpha, m.floats2.x, vec3(m.color2.x, m.color2.y, m.color2.z), m.floats.w,
+                              m.extra.x, m.extra.y);
+        if (on_metal)
+            b = bsdf_coated_conductor(coat, color0, color1, alpha, flags);
+        else
+            b = bsdf_coated_diffuse(coat, color0, flags);
     } else {
         b = bsdf_interface();
     }
     // Only anisotropic roughness asks where the tangent points.
     bool oriented = CALLED_FOR(EFFECT_ANISOTROPIC) && (b.alpha.x != b.alpha.y || b.alpha_base.x != b.alpha_base.y);
-    if (oriented) frame = frame_from_xz(s.dpdu, s.ns);
-    else frame = frame_from_z(s.ns);
+    if (oriented)
+        frame = frame_from_xz(s.dpdu, s.ns);
+    else
+        frame = frame_from_z(s.ns);
     return b;
 }
 

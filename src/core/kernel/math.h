@@ -50,7 +50,8 @@ FN void sin_cos(float x, OUT(float) s, OUT(float) c) {
     float y = ((x - q * 1.5703125f) - q * 4.837512969970703125e-4f) - q * 7.549789954891882e-8f;
     float z = y * y;
     float sine = ((-1.9515295891e-4f * z + 8.3321608736e-3f) * z - 1.6666654611e-1f) * z * y + y;
-    float cosine = ((2.443315711809948e-5f * z - 1.388731625493765e-3f) * z + 4.166664568298827e-2f) * z * z - 0.5f * z + 1.0f;
+    float cosine =
+        ((2.443315711809948e-5f * z - 1.388731625493765e-3f) * z + 4.166664568298827e-2f) * z * z - 0.5f * z + 1.0f;
     int quadrant = int(q) & 3;
     float a = (quadrant & 1) != 0 ? cosine : sine;
     float b = (quadrant & 1) != 0 ? sine : cosine;
@@ -84,7 +85,9 @@ FN float atan_of(float x) {
         y = (a - 1.0f) / (a + 1.0f);
     }
     float z = y * y;
-    float value = base + ((((8.05374449538e-2f * z - 1.38776856032e-1f) * z + 1.99777106478e-1f) * z - 3.33329491539e-1f) * z * y + y);
+    float value =
+        base +
+        ((((8.05374449538e-2f * z - 1.38776856032e-1f) * z + 1.99777106478e-1f) * z - 3.33329491539e-1f) * z * y + y);
     return x < 0.0f ? -value : value;
 }
 
@@ -115,7 +118,10 @@ FN float exp_of(float x) {
     float n = floor(x * 1.44269504088896341f + 0.5f);
     float y = (x - n * 0.693359375f) + n * 2.12194440e-4f;
     float z = y * y;
-    float p = ((((1.9875691500e-4f * y + 1.3981999507e-3f) * y + 8.3334519073e-3f) * y + 4.1665795894e-2f) * y + 1.6666665459e-1f) * y + 5.0000001201e-1f;
+    float p = ((((1.9875691500e-4f * y + 1.3981999507e-3f) * y + 8.3334519073e-3f) * y + 4.1665795894e-2f) * y +
+               1.6666665459e-1f) *
+                  y +
+              5.0000001201e-1f;
     float value = p * z + y + 1.0f;
     // 2^n in two halves, each a normal float.
     int k = int(n);
@@ -136,7 +142,8 @@ FN float log_of(float x) {
         m = m - 1.0f;
     }
     float z = m * m;
-    float p = (((7.0376836292e-2f * m - 1.1514610310e-1f) * m + 1.1676998740e-1f) * m - 1.2420140846e-1f) * m + 1.4249322787e-1f;
+    float p = (((7.0376836292e-2f * m - 1.1514610310e-1f) * m + 1.1676998740e-1f) * m - 1.2420140846e-1f) * m +
+              1.4249322787e-1f;
     p = (((p * m - 1.6668057665e-1f) * m + 2.0000714765e-1f) * m - 2.4999993993e-1f) * m + 3.3333331174e-1f;
     float y = m * z * p - e * 2.12194440e-4f - 0.5f * z;
     return (m + y) + e * 0.693359375f;
@@ -185,11 +192,13 @@ FN vec3 transform_point(vec4 r0, vec4 r1, vec4 r2, vec3 p) {
                 r2.x * p.x + r2.y * p.y + r2.z * p.z + r2.w);
 }
 FN vec3 transform_vector(vec4 r0, vec4 r1, vec4 r2, vec3 v) {
-    return vec3(r0.x * v.x + r0.y * v.y + r0.z * v.z, r1.x * v.x + r1.y * v.y + r1.z * v.z, r2.x * v.x + r2.y * v.y + r2.z * v.z);
+    return vec3(r0.x * v.x + r0.y * v.y + r0.z * v.z, r1.x * v.x + r1.y * v.y + r1.z * v.z,
+                r2.x * v.x + r2.y * v.y + r2.z * v.z);
 }
 // A normal by the transform whose *inverse* has the rows given: multiplication by the inverse's transpose. Not unit length.
 FN vec3 transform_normal(vec4 i0, vec4 i1, vec4 i2, vec3 n) {
-    return vec3(i0.x * n.x + i1.x * n.y + i2.x * n.z, i0.y * n.x + i1.y * n.y + i2.y * n.z, i0.z * n.x + i1.z * n.y + i2.z * n.z);
+    return vec3(i0.x * n.x + i1.x * n.y + i2.x * n.z, i0.y * n.x + i1.y * n.y + i2.y * n.z,
+                i0.z * n.x + i1.z * n.y + i2.z * n.z);
 }
 // Bound of the error of transform_point applied to p with error e (pbrt, 4th edition, section 6.8.6).
 FN vec3 transform_error(vec4 r0, vec4 r1, vec4 r2, vec3 p, vec3 e) {
@@ -198,8 +207,9 @@ FN vec3 transform_error(vec4 r0, vec4 r1, vec4 r2, vec3 p, vec3 e) {
     vec3 from_rounding = vec3(abs(r0.x) * a.x + abs(r0.y) * a.y + abs(r0.z) * a.z + abs(r0.w),
                               abs(r1.x) * a.x + abs(r1.y) * a.y + abs(r1.z) * a.z + abs(r1.w),
                               abs(r2.x) * a.x + abs(r2.y) * a.y + abs(r2.z) * a.z + abs(r2.w));
-    vec3 carried = vec3(abs(r0.x) * e.x + abs(r0.y) * e.y + abs(r0.z) * e.z, abs(r1.x) * e.x + abs(r1.y) * e.y + abs(r1.z) * e.z,
-                        abs(r2.x) * e.x + abs(r2.y) * e.y + abs(r2.z) * e.z);
+    vec3 carried =
+        vec3(abs(r0.x) * e.x + abs(r0.y) * e.y + abs(r0.z) * e.z, abs(r1.x) * e.x + abs(r1.y) * e.y + abs(r1.z) * e.z,
+             abs(r2.x) * e.x + abs(r2.y) * e.y + abs(r2.z) * e.z);
     return (g + 1.0f) * carried + g * from_rounding;
 }
 

@@ -7,6 +7,9 @@
 #define LAMPYRIS_KERNEL_PARAMS
 
 #define LAMPYRIS_PARAMETER_MEMBER(type, name, default_value, low, high, doc) type name;
-#define PARAMS(S, LIST) struct S { LIST(LAMPYRIS_PARAMETER_MEMBER) };
+#define PARAMS(S, LIST)                 \
+    struct S {                          \
+        LIST(LAMPYRIS_PARAMETER_MEMBER) \
+    };
 
 #endif

@@ -31,9 +31,12 @@
 #define INOUT(T) inout T
 #define CONST const
 #define FN
-#define SCENE_RO(binding_, T, name) layout(std430, set = 0, binding = binding_) readonly restrict buffer name##Block { T name[]; };
-#define BUFFER_RO(binding_, T, name) layout(std430, set = 1, binding = binding_) readonly restrict buffer name##Block { T name[]; };
-#define BUFFER_RW(binding_, T, name) layout(std430, set = 1, binding = binding_) restrict buffer name##Block { T name[]; };
+#define SCENE_RO(binding_, T, name) \
+    layout(std430, set = 0, binding = binding_) readonly restrict buffer name##Block { T name[]; };
+#define BUFFER_RO(binding_, T, name) \
+    layout(std430, set = 1, binding = binding_) readonly restrict buffer name##Block { T name[]; };
+#define BUFFER_RW(binding_, T, name) \
+    layout(std430, set = 1, binding = binding_) restrict buffer name##Block { T name[]; };
 #define HAS(effect) ((kEffects & (effect)) != 0u)
 #define KERNEL(name) void kernel_main(uint index)
 #define ATOMIC_ADD_U32(place, value) atomicAdd(place, value)

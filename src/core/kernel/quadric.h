@@ -144,7 +144,8 @@ FN vec3 quadric_set_position(uint geometry, vec3 p, OUT(vec3) error) {
     vec3 own = gamma_bound(5.0f) * abs(p);
     if (g.data.x == GEOMETRY_DISK) own = vec3(0.0f);
     if (g.data.x == GEOMETRY_CYLINDER) own.z = 0.0f;
-    error = transform_vector(abs(m.to0), abs(m.to1), abs(m.to2), own) + quadric_bound() * transform_magnitude(m.to0, m.to1, m.to2, p);
+    error = transform_vector(abs(m.to0), abs(m.to1), abs(m.to2), own) +
+            quadric_bound() * transform_magnitude(m.to0, m.to1, m.to2, p);
     return transform_point(m.to0, m.to1, m.to2, p);
 }
 
@@ -186,7 +187,8 @@ FN void quadric_fill(uint geometry, vec3 p, INOUT(Surface) s) {
         float sign = (g.data.y & GEOMETRY_FLIP) != 0u ? -1.0f : 1.0f;
         float curvature = sign / g.params.x;
         vec3 dndu = transform_normal(m.from0, m.from1, m.from2, dpdu * curvature);
-        vec3 dndv = kind == GEOMETRY_SPHERE ? transform_normal(m.from0, m.from1, m.from2, dpdv * curvature) : vec3(0.0f);
+        vec3 dndv =
+            kind == GEOMETRY_SPHERE ? transform_normal(m.from0, m.from1, m.from2, dpdv * curvature) : vec3(0.0f);
         s.dndu = unit_derivative(s.ng, n_length, dndu);
         s.dndv = unit_derivative(s.ng, n_length, dndv);
     }

@@ -7,11 +7,11 @@
 #define LAMPYRIS_KERNEL_SHAPE_SAMPLING
 
 struct ShapeSample {
-    vec3 wi;         // unit direction from the reference point
+    vec3 wi;  // unit direction from the reference point
     float distance;
-    float pdf;       // 1/sr
+    float pdf;  // 1/sr
     vec3 position;
-    vec3 ng;         // unit geometric normal, oriented as Surface's
+    vec3 ng;  // unit geometric normal, oriented as Surface's
     vec2 uv;
 };
 
@@ -53,7 +53,8 @@ FN float triangle_sampled_solid_angle(IN(LightRecord) light, vec3 ref_p, OUT(vec
     float b2 = length_squared(b);
     float c2 = length_squared(c);
     // At most this far away the solid angle can be large enough.
-    if (!(light.v0.w > SPHERICAL_TRIANGLE_MIN * min(a2, min(b2, c2)) * 0.25f) || !(min(a2, min(b2, c2)) > 0.0f)) return 0.0f;
+    if (!(light.v0.w > SPHERICAL_TRIANGLE_MIN * min(a2, min(b2, c2)) * 0.25f) || !(min(a2, min(b2, c2)) > 0.0f))
+        return 0.0f;
     a = a / sqrt(a2);
     b = b / sqrt(b2);
     c = c / sqrt(c2);
@@ -91,7 +92,8 @@ FN vec3 sample_spherical_triangle(vec3 a, vec3 b, vec3 c, float solid_angle, vec
 FN vec3 triangle_light_normal(IN(LightRecord) light, IN(GeometryRecord) g, uvec3 corner, vec3 barycentric) {
     vec3 ng = unit(cross3(vec3(light.v1) - vec3(light.v0), vec3(light.v2) - vec3(light.v0)));
     if (HAS(EFFECT_SMOOTH_NORMALS) && (g.data.y & GEOMETRY_HAS_NORMALS) != 0u) {
-        vec3 ns = barycentric.x * vertex_normal(g.attributes.x + corner.x) + barycentric.y * vertex_normal(g.attributes.x + corner.y) +
+        vec3 ns = barycentric.x * vertex_normal(g.attributes.x + corner.x) +
+                  barycentric.y * vertex_normal(g.attributes.x + corner.y) +
                   barycentric.z * vertex_normal(g.attributes.x + corner.z);
         return face_forward(ng, ns);
     }
@@ -134,7 +136,8 @@ FN bool sample_triangle_light(IN(LightRecord) light, vec3 ref_p, vec2 u, OUT(Sha
     }
     s.uv = vec2(barycentric.y + barycentric.z, barycentric.z);  // pbrt's: (0,0), (1,0), (1,1)
     if ((HAS(EFFECT_LIGHT_TEXTURES) || HAS(EFFECT_ALPHA)) && (g.data.y & GEOMETRY_HAS_UVS) != 0u) {
-        s.uv = barycentric.x * vertex_uv(g.attributes.y + corner.x) + barycentric.y * vertex_uv(g.attributes.y + corner.y) +
+        s.uv = barycentric.x * vertex_uv(g.attributes.y + corner.x) +
+               barycentric.y * vertex_uv(g.attributes.y + corner.y) +
                barycentric.z * vertex_uv(g.attributes.y + corner.z);
     }
     return true;
@@ -220,7 +223,8 @@ FN bool sample_quadric_light(uint geometry, vec3 ref_p, vec2 u, OUT(ShapeSample)
             s.wi = set_w / stretch;
             s.distance = t * g.params.x * stretch;
             s.position = ref_p + s.wi * s.distance;
-            s.pdf = pdf_uniform_cone(one_minus_cos_max) * abs(determinant_of(m.from0, m.from1, m.from2)) * (stretch * stretch * stretch);
+            s.pdf = pdf_uniform_cone(one_minus_cos_max) * abs(determinant_of(m.from0, m.from1, m.from2)) *
+                    (stretch * stretch * stretch);
             if (HAS(EFFECT_LIGHT_TEXTURES) || HAS(EFFECT_ALPHA)) s.uv = quadric_uv(kind, g.params, p);
             return is_finite(s.pdf);
         }
@@ -243,7 +247,8 @@ FN float pdf_quadric_light(uint geometry, vec3 ref_p, vec3 position, vec3 ng, ve
         float one_minus_cos_max = sphere_cone(g.params, transform_point(m.from0, m.from1, m.from2, ref_p));
         if (one_minus_cos_max > 0.0f) {
             float stretch = 1.0f / length_of(transform_vector(m.from0, m.from1, m.from2, wi));
-            return pdf_uniform_cone(one_minus_cos_max) * abs(determinant_of(m.from0, m.from1, m.from2)) * (stretch * stretch * stretch);
+            return pdf_uniform_cone(one_minus_cos_max) * abs(determinant_of(m.from0, m.from1, m.from2)) *
+                   (stretch * stretch * stretch);
         }
     }
     vec3 p = transform_point(m.from0, m.from1, m.from2, position);

@@ -19,20 +19,20 @@ struct Hit {
 // A point on a surface, in world space.
 struct Surface {
     vec3 position;
-    vec3 error;     // bound of the absolute rounding error of `position`, per coordinate: rays start outside of it
-    vec3 ng;        // unit geometric normal, on the side that pbrt calls outside (see reference: orientation rules)
-    vec3 ns;        // unit shading normal
-    vec3 dpdu;      // of the surface; the shading tangent is its part orthogonal to ns
+    vec3 error;  // bound of the absolute rounding error of `position`, per coordinate: rays start outside of it
+    vec3 ng;     // unit geometric normal, on the side that pbrt calls outside (see reference: orientation rules)
+    vec3 ns;     // unit shading normal
+    vec3 dpdu;   // of the surface; the shading tangent is its part orthogonal to ns
     vec3 dpdv;
-    vec3 dndu;      // change of the shading normal: bump mapping needs it
+    vec3 dndu;  // change of the shading normal: bump mapping needs it
     vec3 dndv;
     vec2 uv;
-    float distance; // along the ray that found it
+    float distance;  // along the ray that found it
     uint instance;
     uint geometry;
     uint primitive;
     uint material;
-    uint light;     // the area light that this primitive is, or NONE
+    uint light;  // the area light that this primitive is, or NONE
 };
 
 // No surface, but no indeterminate member either.

@@ -31,7 +31,8 @@ FN vec3 image_texel(IN(ImageRecord) record, int x, int y) {
     if (kind == TEXEL_RGBA8) {
         uint bytes = texels[first + index];
         uint table = record.decode.x;
-        return vec3(uintBitsToFloat(texels[table + (bytes & 0xffu)]), uintBitsToFloat(texels[table + ((bytes >> 8u) & 0xffu)]),
+        return vec3(uintBitsToFloat(texels[table + (bytes & 0xffu)]),
+                    uintBitsToFloat(texels[table + ((bytes >> 8u) & 0xffu)]),
                     uintBitsToFloat(texels[table + ((bytes >> 16u) & 0xffu)]));
     }
     if (kind == TEXEL_R8) {
@@ -40,7 +41,8 @@ FN vec3 image_texel(IN(ImageRecord) record, int x, int y) {
     }
     if (kind == TEXEL_RGBA16F) {
         uint rg = texels[first + 2u * index];
-        return vec3(half_to_float(rg & 0xffffu), half_to_float(rg >> 16u), half_to_float(texels[first + 2u * index + 1u] & 0xffffu));
+        return vec3(half_to_float(rg & 0xffffu), half_to_float(rg >> 16u),
+                    half_to_float(texels[first + 2u * index + 1u] & 0xffffu));
     }
     if (kind == TEXEL_RGB32F) {
         uint at = first + 3u * index;
@@ -211,11 +213,16 @@ FN vec3 texture_noise(uint op, uvec4 code, vec3 mapped) {
             strength = 1.0f;
         }
         vec3 at = frequency * p;
-        if (dots) at = cell + (i == 0u ? vec3(0.5f, 0.5f, 0.0f) : (i == 1u ? vec3(1.5f, 2.8f, 0.0f) : vec3(4.5f, 9.8f, 0.0f)));
+        if (dots)
+            at =
+                cell + (i == 0u ? vec3(0.5f, 0.5f, 0.0f) : (i == 1u ? vec3(1.5f, 2.8f, 0.0f) : vec3(4.5f, 9.8f, 0.0f)));
         float value = noise_at(code.z, at);
-        if (i == 0u) found.x = value;
-        else if (i == 1u) found.y = value;
-        else if (i == 2u) found.z = value;
+        if (i == 0u)
+            found.x = value;
+        else if (i == 1u)
+            found.y = value;
+        else if (i == 2u)
+            found.z = value;
         sum = sum + strength * (kind == TEXTURE_WRINKLED ? abs(value) : value);
         frequency = frequency * 1.99f;
         strength = strength * roughness;

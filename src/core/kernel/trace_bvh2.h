@@ -57,7 +57,8 @@ FN bool bvh_walk(vec3 origin, vec3 direction, float t_max, bool any_hit, OUT(Hit
         bool pop = true;
         if ((node & BVH_LEAF) == 0u) {
             float left = bvh_enter(vec3(bvh_nodes[node].left_min), vec3(bvh_nodes[node].left_max), o, inverse, t_best);
-            float right = bvh_enter(vec3(bvh_nodes[node].right_min), vec3(bvh_nodes[node].right_max), o, inverse, t_best);
+            float right =
+                bvh_enter(vec3(bvh_nodes[node].right_min), vec3(bvh_nodes[node].right_max), o, inverse, t_best);
             uint left_child = floatBitsToUint(bvh_nodes[node].left_min.w);
             uint right_child = floatBitsToUint(bvh_nodes[node].left_max.w);
             bool hits_left = left < INFINITE_DISTANCE;

@@ -7,7 +7,8 @@ layout(set = 0, binding = 16) uniform accelerationStructureEXT top_level;
 // The closest hit (or, with `any_hit`, some hit) with 0 < t < t_max.
 bool ray_query_walk(vec3 origin, vec3 direction, float t_max, bool any_hit, OUT(Hit) hit) {
     rayQueryEXT query;
-    rayQueryInitializeEXT(query, top_level, any_hit ? gl_RayFlagsTerminateOnFirstHitEXT : gl_RayFlagsNoneEXT, 0xffu, origin, 0.0f, direction, t_max);
+    rayQueryInitializeEXT(query, top_level, any_hit ? gl_RayFlagsTerminateOnFirstHitEXT : gl_RayFlagsNoneEXT, 0xffu,
+                          origin, 0.0f, direction, t_max);
     bool finished = false;
     while (!finished) {
         if (!rayQueryProceedEXT(query)) {

@@ -13,7 +13,8 @@ Registry<AreaLightFactory>& area_light_registry() {
     static Registry<AreaLightFactory> registry("area light", "Light from surfaces: `AreaLightSource \"name\"`.");
     return registry;
 }
-RegisterAreaLight::RegisterAreaLight(const char* name, const char* summary, ParameterSpecs specs, AreaLightFactory factory) {
+RegisterAreaLight::RegisterAreaLight(const char* name, const char* summary, ParameterSpecs specs,
+                                     AreaLightFactory factory) {
     area_light_registry().add({name, summary, std::move(specs)}, factory);
 }
 
@@ -48,7 +49,8 @@ void build_diffuse(AreaLightContext& context) {
         light.radiance = glm::vec3(scale);
         light.texture = context.build.textures.image_program(filename, glm::vec3(1.0f), reader.location("filename"));
         if (light.texture != kNone)
-            light.texture_average = context.build.textures.average(context.build.scene.texture_ops[light.texture].data.z);
+            light.texture_average =
+                context.build.textures.average(context.build.scene.texture_ops[light.texture].data.z);
         light.power_luminance = luminance_of(light.texture_average);
         context.build.ask(kernel::EFFECT_LIGHT_TEXTURES, light.asked_by);
         reader.find("L");
@@ -60,15 +62,19 @@ void build_diffuse(AreaLightContext& context) {
 
 ParameterSpecs diffuse_specs() {
     return {
-        value("L", ParameterType::kSpectrum, "1 1 1", "radiance that leaves the surface; a spectrum other than rgb is scaled to luminance 1"),
+        value("L", ParameterType::kSpectrum, "1 1 1",
+              "radiance that leaves the surface; a spectrum other than rgb is scaled to luminance 1"),
         real("scale", 1.0, "multiplies the radiance").at_least(0),
-        real("power", 0.0, "luminous power of each primitive, 0: as L and scale say; as in pbrt-v4, rgb values of L multiply it").at_least(0),
+        real("power", 0.0,
+             "luminous power of each primitive, 0: as L and scale say; as in pbrt-v4, rgb values of L multiply it")
+            .at_least(0),
         boolean("twosided", false, "whether the back emits, too"),
         text("filename", "", "an image over uv instead of L"),
     };
 }
 
-const RegisterAreaLight diffuse("diffuse", "Emits the same radiance in all directions.", diffuse_specs(), build_diffuse);
+const RegisterAreaLight diffuse("diffuse", "Emits the same radiance in all directions.", diffuse_specs(),
+                                build_diffuse);
 
 }  // namespace
 
@@ -76,12 +82,13 @@ void begin_area_lights(ShapeContext& context, uint32_t geometry, uint32_t primit
     // Counted among the lights that are not infinite; build_scene moves it behind the infinite ones.
     context.build.scene.geometries[geometry].ids.y = uint32_t(context.build.lights.size());
     if (context.area_light->power > 0.0f && primitive_count > 1)
-        context.build.diagnostics.warning(context.shape.location, fmt::format("each of the {} primitives emits the whole \"power\"", primitive_count),
-                                          "as in pbrt-v4");
+        context.build.diagnostics.warning(
+            context.shape.location, fmt::format("each of the {} primitives emits the whole \"power\"", primitive_count),
+            "as in pbrt-v4");
 }
 
-void add_area_light(ShapeContext& context, kernel::LightRecord record, uint32_t geometry, uint32_t primitive, float area,
-                    float nominal_area) {
+void add_area_light(ShapeContext& context, kernel::LightRecord record, uint32_t geometry, uint32_t primitive,
+                    float area, float nominal_area) {
     const AreaLight& light = *context.area_light;
     const float sides = light.two_sided ? 2.0f : 1.0f;
     glm::vec3 radiance = light.radiance;
@@ -96,7 +103,8 @@ void add_area_light(ShapeContext& context, kernel::LightRecord record, uint32_t 
     record.ids = {geometry, primitive, 0u, 0u};
     record.emission = {radiance, 0.0f};
     const glm::vec3 average = light.texture == kNone ? radiance : radiance * light.texture_average;
-    context.build.lights.push_back({record, luminance_of(average) * sides * area * std::numbers::pi_v<float>, false, context.shape.location});
+    context.build.lights.push_back(
+        {record, luminance_of(average) * sides * area * std::numbers::pi_v<float>, false, context.shape.location});
     if (record.data.x == kernel::LIGHT_GEOMETRY) context.build.ask(kernel::EFFECT_QUADRIC_LIGHTS, light.asked_by);
 }
 

@@ -24,7 +24,7 @@ AreaLight read_area_light(BuildContext& context, Entity& entity);
 void begin_area_lights(ShapeContext& context, uint32_t geometry, uint32_t primitive_count);
 // `area` is the primitive's in world space; `nominal_area` the one by which pbrt-v4 turns "power" into radiance (that of
 // the shape before its transform, for quadrics).
-void add_area_light(ShapeContext& context, kernel::LightRecord record, uint32_t geometry, uint32_t primitive, float area,
-                    float nominal_area);
+void add_area_light(ShapeContext& context, kernel::LightRecord record, uint32_t geometry, uint32_t primitive,
+                    float area, float nominal_area);
 
 }  // namespace lampyris

@@ -72,7 +72,8 @@ BuiltScene build_scene(SceneDescription&& description, const BuildOptions& optio
     context.textures.define_all();  // mistakes in textures that nothing uses are told, too
     context.check_unused_materials();
     finish_lights(context);
-    scene.record.counts = {uint32_t(scene.geometries.size()), uint32_t(scene.instances.size()), kernel::NONE, scene.effects.mask()};
+    scene.record.counts = {uint32_t(scene.geometries.size()), uint32_t(scene.instances.size()), kernel::NONE,
+                           scene.effects.mask()};
     // Embree reads 16 bytes at every vertex, the last one included.
     scene.positions.insert(scene.positions.end(), 4, 0.0f);
     scene.unsupported = diagnostics.unsupported_list();

@@ -24,8 +24,8 @@ struct SceneSettings {
     std::string sampler = "independent";  // "independent" or "sobol" (Owen-scrambled)
     int samples_per_pixel = 16;
     uint32_t seed = 0;
-    std::string output;       // the Film's "filename"; may be empty
-    bool save_half = true;    // EXR: half floats ("savefp16")
+    std::string output;     // the Film's "filename"; may be empty
+    bool save_half = true;  // EXR: half floats ("savefp16")
     // The rectangle of pixels to render, half-open.
     std::array<int, 4> crop{0, 0, 0, 0};
 };

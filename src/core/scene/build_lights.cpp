@@ -46,7 +46,8 @@ void finish_lights(BuildContext& context) {
             context.diagnostics.error(light.location, "the light's emission is not finite", "smaller numbers");
         // Positions and directions are made with the transform in force; v0 of triangles is in the world already.
         const kernel::vec4 place = light.record.v0 + light.record.v1;
-        if (!std::isfinite(place.x + place.y + place.z) || std::abs(place.x) + std::abs(place.y) + std::abs(place.z) > 8.0f * kLargestCoordinate)
+        if (!std::isfinite(place.x + place.y + place.z) ||
+            std::abs(place.x) + std::abs(place.y) + std::abs(place.z) > 8.0f * kLargestCoordinate)
             context.diagnostics.error(light.location, "the light has no finite position or direction",
                                       "the transform in force here scales by 0, or numbers are out of range?");
         scene.lights.push_back(light.record);

@@ -27,7 +27,8 @@ bool refuse_unsupported(BuildContext& context, const MaterialDescription& materi
     for (const char* name : kUnsupported) {
         if (material.type != name) continue;
         context.diagnostics.unsupported(material.type_location.known() ? material.type_location : material.location,
-                                        fmt::format("material \"{}\"", name), "diffuse grey takes its place if skipped");
+                                        fmt::format("material \"{}\"", name),
+                                        "diffuse grey takes its place if skipped");
         return true;
     }
     return false;
@@ -41,10 +42,13 @@ void BuildContext::check_unused_materials() {
         if (built_materials.contains(i) || material.type.empty() || material.type == "none") continue;
         if (const PluginInfo* info = material_registry().find_info(material.type)) {
             for (const ParameterSpec& spec : info->parameters) material.parameters.find(spec.name);
-            material.parameters.report_unused(fmt::format("material \"{}\"", material.type), spec_names(info->parameters), diagnostics);
-        } else if (std::find(std::begin(kUnsupported), std::end(kUnsupported), material.type) == std::end(kUnsupported)) {
+            material.parameters.report_unused(fmt::format("material \"{}\"", material.type),
+                                              spec_names(info->parameters), diagnostics);
+        } else if (std::find(std::begin(kUnsupported), std::end(kUnsupported), material.type) ==
+                   std::end(kUnsupported)) {
             const auto [message, hint] = material_registry().unknown(material.type);
-            diagnostics.error(material.type_location.known() ? material.type_location : material.location, message, hint);
+            diagnostics.error(material.type_location.known() ? material.type_location : material.location, message,
+                              hint);
         }
     }
 }
@@ -60,13 +64,19 @@ uint32_t BuildContext::material(uint32_t description_index, const std::vector<ui
         const MaterialFactory* factory = material_registry().find(material.type);
         if (factory) {
             ParameterReader reader(material_registry().find_info(material.type)->parameters, material, diagnostics);
-            MaterialContext context{*this, material, reader, record, place(material, material.name.empty() ? "Material" : "MakeNamedMaterial"), path};
+            MaterialContext context{*this,
+                                    material,
+                                    reader,
+                                    record,
+                                    place(material, material.name.empty() ? "Material" : "MakeNamedMaterial"),
+                                    path};
             context.path.push_back(description_index);
             (*factory)(context);
             reader.finish(fmt::format("material \"{}\"", material.type));
         } else if (!refuse_unsupported(*this, material)) {
             const auto [message, hint] = material_registry().unknown(material.type);
-            diagnostics.error(material.type_location.known() ? material.type_location : material.location, message, hint);
+            diagnostics.error(material.type_location.known() ? material.type_location : material.location, message,
+                              hint);
         }
     }
     const uint32_t index = uint32_t(scene.materials.size());

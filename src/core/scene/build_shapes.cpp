@@ -15,7 +15,8 @@ namespace lampyris {
 uint32_t ShapeContext::add_geometry(uint32_t kind, uint32_t flags, uint32_t primitive_count) {
     kernel::GeometryRecord record{};
     if (shape.reverse_orientation) flags |= kernel::GEOMETRY_REVERSED;
-    if (shape.reverse_orientation != swaps_handedness(shape.world_from_object.matrix[0])) flags |= kernel::GEOMETRY_FLIP;
+    if (shape.reverse_orientation != swaps_handedness(shape.world_from_object.matrix[0]))
+        flags |= kernel::GEOMETRY_FLIP;
     record.data = {kind, flags, 0u, 0u};
     record.ids = {material, kernel::NONE, kernel::NONE, kernel::NONE};
     record.attributes = {kernel::NONE, kernel::NONE, primitive_count, 0xffffffffu};
@@ -25,7 +26,8 @@ uint32_t ShapeContext::add_geometry(uint32_t kind, uint32_t flags, uint32_t prim
     if (alpha.texture != kNone || alpha.value < 1.0f) {
         build.ask(kernel::EFFECT_ALPHA, asked_by);
         if (area_light && alpha.texture == kNone && alpha.value == 0.0f)
-            build.diagnostics.unsupported(reader.location("alpha"), "an area light that rays pass (alpha 0)", "pbrt-v4's light without a surface; skipped, it emits nothing");
+            build.diagnostics.unsupported(reader.location("alpha"), "an area light that rays pass (alpha 0)",
+                                          "pbrt-v4's light without a surface; skipped, it emits nothing");
     }
     build.scene.geometries.push_back(record);
     return uint32_t(build.scene.geometries.size() - 1);
@@ -44,7 +46,8 @@ struct Box {
     // The corners of this box, transformed, into another.
     void add_to(Box& box, const kernel::TransformRecord& t) const {
         for (int corner = 0; corner < 8; ++corner) {
-            const glm::dvec4 p(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z, 1.0);
+            const glm::dvec4 p(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z,
+                               1.0);
             box.add({glm::dot(glm::dvec4(t.to0), p), glm::dot(glm::dvec4(t.to1), p), glm::dot(glm::dvec4(t.to2), p)});
         }
     }
@@ -83,7 +86,8 @@ namespace {
 
 class ShapeBuilder {
  public:
-    explicit ShapeBuilder(BuildContext& context) : context_(context), area_lights_(context.description.area_lights.size()) {}
+    explicit ShapeBuilder(BuildContext& context)
+        : context_(context), area_lights_(context.description.area_lights.size()) {}
 
     GeometrySet build(std::vector<ShapeDescription>& shapes, bool in_object) {
         GeometrySet set{uint32_t(context_.scene.geometries.size()), 0};
@@ -106,24 +110,32 @@ class ShapeBuilder {
         if (shape.world_from_object.animated()) context_.refuse_motion(shape.world_from_object, shape.location);
         const glm::mat4& matrix = shape.world_from_object.matrix[0];
         if (!invertible(matrix)) {
-            context_.diagnostics.error(shape.location, "the transform in force here cannot be inverted", "a scale by 0, or numbers out of range?");
+            context_.diagnostics.error(shape.location, "the transform in force here cannot be inverted",
+                                       "a scale by 0, or numbers out of range?");
             return;
         }
         context_.refuse_medium(shape.interior_medium);
         context_.refuse_medium(shape.exterior_medium);
         ParameterReader reader(shape_registry().find_info(shape.type)->parameters, shape, context_.diagnostics);
-        ShapeContext context{context_, shape, reader, context_.material(shape.material), area_light(shape, in_object), in_object,
+        ShapeContext context{context_,
+                             shape,
+                             reader,
+                             context_.material(shape.material),
+                             area_light(shape, in_object),
+                             in_object,
                              context_.place(shape, "Shape")};
         const GeometrySet before{uint32_t(context_.scene.geometries.size()), 0};
         (*factory)(context);
-        const Box box = set_bounds(context_.scene, {before.first_geometry, uint32_t(context_.scene.geometries.size()) - before.first_geometry});
+        const Box box = set_bounds(context_.scene, {before.first_geometry, uint32_t(context_.scene.geometries.size()) -
+                                                                               before.first_geometry});
         if (!box.empty() && box.too_far()) refuse_distance(context_.diagnostics, shape.location, "shape");
         reader.finish(fmt::format("shape \"{}\"", shape.type));
     }
 
     void refuse(const ShapeDescription& shape) {
         if (shape.type == "curve" || shape.type == "heightfield") {
-            context_.diagnostics.unsupported(shape.type_location, fmt::format("shape \"{}\"", shape.type), "it is left out if skipped");
+            context_.diagnostics.unsupported(shape.type_location, fmt::format("shape \"{}\"", shape.type),
+                                             "it is left out if skipped");
             return;
         }
         const auto [message, hint] = shape_registry().unknown(shape.type);
@@ -139,7 +151,8 @@ class ShapeBuilder {
             light = read_area_light(context_, entity);
         }
         const auto ignore = [&](const char* why) {
-            context_.diagnostics.warning(shape.location, fmt::format("the area light is ignored: {}", why), "as in pbrt-v4");
+            context_.diagnostics.warning(shape.location, fmt::format("the area light is ignored: {}", why),
+                                         "as in pbrt-v4");
             return nullptr;
         };
         if (in_object) return ignore("the shape is a part of an instanced object");
@@ -182,7 +195,8 @@ void build_shapes(BuildContext& context) {
         if (instance.world_from_object.animated()) context.refuse_motion(instance.world_from_object, instance.location);
         const glm::mat4& matrix = instance.world_from_object.matrix[0];
         if (!invertible(matrix)) {
-            context.diagnostics.error(instance.location, "the transform in force here cannot be inverted", "a scale by 0, or numbers out of range?");
+            context.diagnostics.error(instance.location, "the transform in force here cannot be inverted",
+                                      "a scale by 0, or numbers out of range?");
             continue;
         }
         if (set.geometry_count == 0) continue;
@@ -195,7 +209,9 @@ void build_shapes(BuildContext& context) {
         scene.instances.push_back(record);
         scene.instance_sets.push_back(index);
         places.push_back(instance.location);
-        context.ask(kernel::EFFECT_INSTANCES, fmt::format("{} (ObjectInstance \"{}\")", description.sources->describe(instance.location), object.name));
+        context.ask(
+            kernel::EFFECT_INSTANCES,
+            fmt::format("{} (ObjectInstance \"{}\")", description.sources->describe(instance.location), object.name));
     }
     scene.record.bounds = bounding_sphere(scene);
     // Rays from anywhere in the scene, and from the camera, must be in range within each instance.
@@ -205,8 +221,10 @@ void build_shapes(BuildContext& context) {
     for (size_t i = 1; i < scene.instances.size(); ++i) {
         const kernel::TransformRecord& t = scene.instances[i].transform;
         for (const kernel::vec4& row : {t.from0, t.from1, t.from2}) {
-            if (glm::length(glm::vec3(row)) * std::max(reach, 1.0f) + std::abs(row.w) <= 0.5f * kLargestCoordinate) continue;
-            context.diagnostics.error(places[i], "the instance is too small beside the scene for rays to be traced", "a larger scale");
+            if (glm::length(glm::vec3(row)) * std::max(reach, 1.0f) + std::abs(row.w) <= 0.5f * kLargestCoordinate)
+                continue;
+            context.diagnostics.error(places[i], "the instance is too small beside the scene for rays to be traced",
+                                      "a larger scale");
             break;
         }
     }

@@ -38,7 +38,8 @@ bool swaps_handedness(const glm::mat4& m) { return glm::determinant(glm::dmat3(g
 
 uint32_t BuildContext::add_transform(const glm::mat4& to, Location where) {
     if (!invertible(to)) {
-        diagnostics.error(where, "the transform in force here cannot be inverted", "a scale by 0, or numbers out of range?");
+        diagnostics.error(where, "the transform in force here cannot be inverted",
+                          "a scale by 0, or numbers out of range?");
         scene.transforms.push_back(transform_record(glm::mat4(1.0f)));
     } else {
         scene.transforms.push_back(transform_record(to));
@@ -48,13 +49,15 @@ uint32_t BuildContext::add_transform(const glm::mat4& to, Location where) {
 
 void BuildContext::refuse_medium(uint32_t medium) {
     if (medium >= description.media.size() || !refused_media.insert(medium).second) return;
-    diagnostics.unsupported(description.media[medium].location, fmt::format("participating medium \"{}\"", description.media[medium].name),
+    diagnostics.unsupported(description.media[medium].location,
+                            fmt::format("participating medium \"{}\"", description.media[medium].name),
                             "empty space takes its place if skipped");
 }
 
 void BuildContext::refuse_motion(const AnimatedTransform& transform, Location where) {
     if (transform.animated())
-        diagnostics.unsupported(where, "motion blur (an animated transform)", "without it, the transform at the start holds");
+        diagnostics.unsupported(where, "motion blur (an animated transform)",
+                                "without it, the transform at the start holds");
 }
 
 glm::vec3 read_spectrum(BuildContext& context, ParameterReader& reader, std::string_view name, SpectrumUse use,
@@ -70,7 +73,9 @@ namespace {
 const std::string* texture_name(const Parameter& parameter, BuildContext& context) {
     const auto* names = std::get_if<std::vector<std::string>>(&parameter.values);
     if (names && names->size() == 1) {
-        context.ask(kernel::EFFECT_TEXTURES, fmt::format("{} (\"texture {}\")", context.description.sources->describe(parameter.location), parameter.name));
+        context.ask(kernel::EFFECT_TEXTURES,
+                    fmt::format("{} (\"texture {}\")", context.description.sources->describe(parameter.location),
+                                parameter.name));
         return &names->front();
     }
     context.diagnostics.error(parameter.location, fmt::format("\"{}\" must name one texture", parameter.name));
@@ -90,7 +95,8 @@ ColorSlot read_color(BuildContext& context, ParameterReader& reader, std::string
         if (const std::string* texture = texture_name(*parameter, context))
             slot.texture = context.textures.color_program(*texture, parameter->value_location);
     } else {
-        slot.value = spectrum_rgb(*parameter, use, context.description.directory, context.diagnostics).value_or(default_value);
+        slot.value =
+            spectrum_rgb(*parameter, use, context.description.directory, context.diagnostics).value_or(default_value);
     }
     return slot;
 }
@@ -116,11 +122,13 @@ Registry<ShapeFactory>& shape_registry() {
     return registry;
 }
 Registry<MaterialFactory>& material_registry() {
-    static Registry<MaterialFactory> registry("material", "How surfaces scatter light: `Material \"name\"`, `MakeNamedMaterial`.");
+    static Registry<MaterialFactory> registry("material",
+                                              "How surfaces scatter light: `Material \"name\"`, `MakeNamedMaterial`.");
     return registry;
 }
 Registry<LightFactory>& light_registry() {
-    static Registry<LightFactory> registry("light", "Sources of light: `LightSource \"name\"`; area lights: `AreaLightSource`.");
+    static Registry<LightFactory> registry("light",
+                                           "Sources of light: `LightSource \"name\"`; area lights: `AreaLightSource`.");
     return registry;
 }
 Registry<CameraFactory>& camera_registry() {
@@ -133,10 +141,12 @@ Registry<FilterFactory>& filter_registry() {
 }
 
 RegisterShape::RegisterShape(const char* name, const char* summary, ParameterSpecs specs, ShapeFactory factory) {
-    specs.push_back(real("alpha", 1.0, "share of the surface that is there; 0 lets every ray pass").between(0, 1).textured());
+    specs.push_back(
+        real("alpha", 1.0, "share of the surface that is there; 0 lets every ray pass").between(0, 1).textured());
     shape_registry().add({name, summary, std::move(specs)}, factory);
 }
-RegisterMaterial::RegisterMaterial(const char* name, const char* summary, ParameterSpecs specs, MaterialFactory factory) {
+RegisterMaterial::RegisterMaterial(const char* name, const char* summary, ParameterSpecs specs,
+                                   MaterialFactory factory) {
     material_registry().add({name, summary, std::move(specs)}, factory);
 }
 RegisterLight::RegisterLight(const char* name, const char* summary, ParameterSpecs specs, LightFactory factory) {

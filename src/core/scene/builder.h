@@ -43,9 +43,9 @@ struct BuildContext {
     // Lights in two groups, since the infinite ones come first in Scene::lights; the weights are powers.
     struct PendingLight {
         kernel::LightRecord record;
-        float power = 0.0f;          // luminous; of infinite and distant lights: per unit of the scene's radius squared
+        float power = 0.0f;  // luminous; of infinite and distant lights: per unit of the scene's radius squared
         bool scales_with_scene = false;
-        Location location;           // of the directive
+        Location location;  // of the directive
     };
     std::vector<PendingLight> infinite_lights, lights;
 
@@ -104,7 +104,7 @@ struct ShapeContext {
     BuildContext& build;
     ShapeDescription& shape;
     ParameterReader& reader;
-    uint32_t material = 0;                // into Scene::materials
+    uint32_t material = 0;  // into Scene::materials
     const AreaLight* area_light = nullptr;
     bool in_object = false;
     std::string asked_by;

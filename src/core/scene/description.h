@@ -19,16 +19,29 @@
 
 namespace lampyris {
 
-enum class ParameterType { kBool, kInteger, kFloat, kPoint2, kVector2, kPoint3, kVector3, kNormal, kRgb, kBlackbody,
-                           kSpectrum, kString, kTexture };
+enum class ParameterType {
+    kBool,
+    kInteger,
+    kFloat,
+    kPoint2,
+    kVector2,
+    kPoint3,
+    kVector3,
+    kNormal,
+    kRgb,
+    kBlackbody,
+    kSpectrum,
+    kString,
+    kTexture
+};
 
 // One `"type name" [ values ]`. Numbers of integer parameters are ints; of bools, one byte each; everything numeric
 // else is float (a spectrum given as wavelength-value pairs too; a spectrum by name is strings).
 struct Parameter {
     ParameterType type;
     std::string name;
-    Location location;        // of the "type name" string
-    Location value_location;  // of the first value
+    Location location;                      // of the "type name" string
+    Location value_location;                // of the first value
     std::string_view color_space = "srgb";  // that rgb values are given in: one of kColorSpaces
     std::variant<std::vector<float>, std::vector<int32_t>, std::vector<uint8_t>, std::vector<std::string>> values;
     mutable bool used = false;  // set by the getters; what is left unused is an error
@@ -52,17 +65,19 @@ class ParameterList {
     bool get_bool(std::string_view name, bool default_value, Diagnostics& diagnostics) const;
     std::string get_string(std::string_view name, const std::string& default_value, Diagnostics& diagnostics) const;
     // A string that must be one of `choices`.
-    std::string get_choice(std::string_view name, const std::string& default_value, const std::vector<std::string>& choices,
-                           Diagnostics& diagnostics) const;
+    std::string get_choice(std::string_view name, const std::string& default_value,
+                           const std::vector<std::string>& choices, Diagnostics& diagnostics) const;
     // Fixed-size tuples: point2, vector3, rgb, ...; nothing when absent.
-    std::vector<float> get_floats(std::string_view name, ParameterType type, size_t count, Diagnostics& diagnostics) const;
+    std::vector<float> get_floats(std::string_view name, ParameterType type, size_t count,
+                                  Diagnostics& diagnostics) const;
     // The whole array of a parameter (P, N, uv, indices); empty when absent. Moves the storage out: large meshes are not copied.
     std::vector<float> take_floats(std::string_view name, ParameterType type, Diagnostics& diagnostics);
     std::vector<int32_t> take_ints(std::string_view name, Diagnostics& diagnostics);
     // Adds those that are missing here (Attribute's defaults). They count as used: one may apply to some types only.
     void add_defaults(const std::vector<Parameter>& defaults);
     // Every parameter that no getter asked for becomes an error, with the known names as hint.
-    void report_unused(const std::string& of_what, const std::vector<std::string>& known, Diagnostics& diagnostics) const;
+    void report_unused(const std::string& of_what, const std::vector<std::string>& known,
+                       Diagnostics& diagnostics) const;
 };
 
 // A directive with a quoted type: Camera "perspective", Shape "sphere", ...
@@ -135,7 +150,8 @@ struct SceneDescription {
     ParameterList options;  // of Option directives; names in lower case without "_" and "-", as pbrt compares them
     std::string color_space = "srgb";  // of the film: the one in force at the Film directive
     float transform_start_time = 0.0f, transform_end_time = 1.0f;  // when the two matrices of an AnimatedTransform hold
-    std::vector<TextureDescription> textures;  // in order of definition; float and spectrum textures have separate names
+    std::vector<TextureDescription>
+        textures;  // in order of definition; float and spectrum textures have separate names
     std::vector<MaterialDescription> materials;
     std::vector<MediumDescription> media;
     std::vector<LightDescription> lights;

@@ -27,11 +27,16 @@ struct OptionInfo {
     OptionType type;
 };
 constexpr OptionInfo kOptions[] = {
-    {"disablepixeljitter", OptionType::kBool},      {"disabletexturefiltering", OptionType::kBool},
-    {"disablewavelengthjitter", OptionType::kBool}, {"displacementedgescale", OptionType::kFloat},
-    {"forcediffuse", OptionType::kBool},            {"msereferenceimage", OptionType::kString},
-    {"msereferenceout", OptionType::kString},       {"pixelstats", OptionType::kBool},
-    {"rendercoordsys", OptionType::kString},        {"seed", OptionType::kInteger},
+    {"disablepixeljitter", OptionType::kBool},
+    {"disabletexturefiltering", OptionType::kBool},
+    {"disablewavelengthjitter", OptionType::kBool},
+    {"displacementedgescale", OptionType::kFloat},
+    {"forcediffuse", OptionType::kBool},
+    {"msereferenceimage", OptionType::kString},
+    {"msereferenceout", OptionType::kString},
+    {"pixelstats", OptionType::kBool},
+    {"rendercoordsys", OptionType::kString},
+    {"seed", OptionType::kInteger},
     {"wavefront", OptionType::kBool},
 };
 
@@ -97,13 +102,15 @@ void Parser::option(const Token& directive) {
     if (info == std::end(kOptions)) {
         std::vector<std::string> names;
         for (const OptionInfo& known : kOptions) names.emplace_back(known.name);
-        diagnostics_->error(name_location, "unknown option \"" + shown(name) + "\"" + did_you_mean(parameter.name, names),
+        diagnostics_->error(name_location,
+                            "unknown option \"" + shown(name) + "\"" + did_you_mean(parameter.name, names),
                             "options are " + list_of(names));
         return;
     }
     if (!read_option(info->type, value, tokenizer_->string_value(value), parameter)) {
         static constexpr const char* kExpected[] = {"true or false", "an integer", "a number", "a string in quotes"};
-        diagnostics_->error(value.location, "option \"" + shown(name) + "\" takes " + kExpected[static_cast<int>(info->type)]);
+        diagnostics_->error(value.location,
+                            "option \"" + shown(name) + "\" takes " + kExpected[static_cast<int>(info->type)]);
         return;
     }
     // The last one counts, as in pbrt.
@@ -130,7 +137,8 @@ void Parser::set_once(const Token& directive, Entity& entity) {
     Entity read;
     if (!read_entity(directive, read)) return;
     if (entity.given())
-        diagnostics_->warning(directive.location, std::string(directive.text) + " is given a second time; this one counts");
+        diagnostics_->warning(directive.location,
+                              std::string(directive.text) + " is given a second time; this one counts");
     entity = std::move(read);
 }
 
@@ -140,7 +148,8 @@ void Parser::camera(const Token& directive) {
     for (int i = 0; i < 2; ++i) {
         const double determinant = glm::determinant(state_.ctm[i]);
         if (determinant == 0.0 || !std::isfinite(determinant)) {
-            diagnostics_->error(directive.location, "the transform in force here cannot be inverted: the camera sees nothing",
+            diagnostics_->error(directive.location,
+                                "the transform in force here cannot be inverted: the camera sees nothing",
                                 "look for a Scale with a zero or a degenerate Transform before this line");
             return;
         }

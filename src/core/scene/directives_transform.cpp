@@ -10,7 +10,8 @@ namespace lampyris {
 // `count` numbers, in brackets or without.
 bool Parser::read_numbers(const Token& directive, std::span<double> values, bool bracketed) {
     const std::string name(directive.text);
-    const std::string needs = name + " takes " + std::to_string(values.size()) + " numbers" + (bracketed ? " in brackets" : "");
+    const std::string needs =
+        name + " takes " + std::to_string(values.size()) + " numbers" + (bracketed ? " in brackets" : "");
     const auto fail = [&](const Token& token, const std::string& what) {
         diagnostics_->error(token.kind == TokenKind::kEnd ? directive.location : token.location, what, needs);
         skip_to_directive();
@@ -30,8 +31,8 @@ bool Parser::read_numbers(const Token& directive, std::span<double> values, bool
         const auto result = token.kind == TokenKind::kWord ? parse_double(token.text.data(), end, values[i])
                                                            : NumberResult{end, NumberStatus::kNotANumber};
         if (result.status == NumberStatus::kNotANumber)
-            return fail(token, "expected number " + std::to_string(i + 1) + " of " + std::to_string(values.size()) + ", but " +
-                                   describe(token));
+            return fail(token, "expected number " + std::to_string(i + 1) + " of " + std::to_string(values.size()) +
+                                   ", but " + describe(token));
         constexpr double kMaxFloat = 3.4e38;  // matrices become floats
         if (result.status == NumberStatus::kOutOfRange || std::abs(values[i]) > kMaxFloat)
             return fail(token, "number out of range for a 32-bit float");

@@ -66,8 +66,7 @@ void Parser::object_begin(const Token& directive) {
                             "close the outer one with ObjectEnd first");
     }
     const auto index = static_cast<uint32_t>(scene_.objects.size());
-    if (const auto* earlier = objects_.define(name, location, index))
-        defined_twice("object", *earlier, location);
+    if (const auto* earlier = objects_.define(name, location, index)) defined_twice("object", *earlier, location);
     ObjectDescription object;
     object.name = name;
     object.location = directive.location;
@@ -96,7 +95,8 @@ void Parser::object_instance(const Token& directive) {
 void Parser::attribute(const Token& directive) {
     std::string target;
     Location location;
-    if (!read_string(directive, "\"shape\", \"light\", \"material\", \"medium\" or \"texture\"", target, &location)) return;
+    if (!read_string(directive, "\"shape\", \"light\", \"material\", \"medium\" or \"texture\"", target, &location))
+        return;
     ParameterList list;
     read_parameters(list, nullptr);
     const std::pair<const char*, Defaults*> targets[] = {{"shape", &state_.shape_defaults},
@@ -143,7 +143,8 @@ void Parser::make_named_material(const Token& directive) {
         diagnostics_->error(location, "named material \"" + shown(material.name) + "\" has no type",
                             "write \"string type\" \"diffuse\", for instance");
     }
-    if (const auto* earlier = materials_.define(material.name, location, static_cast<uint32_t>(scene_.materials.size())))
+    if (const auto* earlier =
+            materials_.define(material.name, location, static_cast<uint32_t>(scene_.materials.size())))
         defined_twice("material", *earlier, location);
     scene_.materials.push_back(std::move(material));
 }
@@ -167,9 +168,10 @@ void Parser::texture(const Token& directive) {
     read_parameters(texture.parameters, state_.texture_defaults);
     if (values != "float" && values != "spectrum") {
         if (!old_format_.entity(directive.text, values, values_location))
-            diagnostics_->error(values_location, "a texture cannot be of \"" + shown(values) + "\"" +
-                                                     did_you_mean(values, {"float", "spectrum"}),
-                                "it is \"float\" or \"spectrum\"");
+            diagnostics_->error(
+                values_location,
+                "a texture cannot be of \"" + shown(values) + "\"" + did_you_mean(values, {"float", "spectrum"}),
+                "it is \"float\" or \"spectrum\"");
         return;
     }
     texture.is_spectrum = values == "spectrum";
@@ -208,7 +210,8 @@ void Parser::medium_interface(const Token& directive) {
     if (!read_string(directive, "a medium's name", interior, &interior_location)) return;
     exterior = interior;
     exterior_location = interior_location;
-    if (tokenizer_->peek().kind == TokenKind::kString) read_string(directive, "a medium's name", exterior, &exterior_location);
+    if (tokenizer_->peek().kind == TokenKind::kString)
+        read_string(directive, "a medium's name", exterior, &exterior_location);
     state_.interior_medium = interior.empty() ? kNone : media_.use(interior, interior_location);
     state_.exterior_medium = exterior.empty() ? kNone : media_.use(exterior, exterior_location);
 }
@@ -242,7 +245,8 @@ void Parser::shape(const Token& directive) {
         return;
     }
     if (shape.area_light != kNone) {
-        diagnostics_->warning(directive.location, "shapes of an object do not emit: the area light is left out, as in pbrt",
+        diagnostics_->warning(directive.location,
+                              "shapes of an object do not emit: the area light is left out, as in pbrt",
                               "place the shape outside of ObjectBegin and ObjectEnd");
         shape.area_light = kNone;
     }

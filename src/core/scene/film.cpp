@@ -33,8 +33,11 @@ bool read_rectangle(FilmContext& film, std::array<int, 2> size, Rectangle& crop)
             return false;
         }
         // pbrt-v4 rounds both ends up (film.cpp, FilmBaseParameters).
-        const auto pixel = [](float share, int side) { return int(std::ceil(float(side) * std::fmin(std::fmax(share, 0.0f), 1.0f))); };
-        crop = {pixel((*numbers)[0], size[0]), pixel((*numbers)[2], size[1]), pixel((*numbers)[1], size[0]), pixel((*numbers)[3], size[1])};
+        const auto pixel = [](float share, int side) {
+            return int(std::ceil(float(side) * std::fmin(std::fmax(share, 0.0f), 1.0f)));
+        };
+        crop = {pixel((*numbers)[0], size[0]), pixel((*numbers)[2], size[1]), pixel((*numbers)[1], size[0]),
+                pixel((*numbers)[3], size[1])};
     }
     return true;
 }
@@ -55,9 +58,10 @@ void build_film(FilmContext& film) {
         size = *build.options.resolution;
     }
     if (build.options.crop) crop = *build.options.crop;
-    if (good && (crop[0] < 0 || crop[1] < 0 || crop[2] > size[0] || crop[3] > size[1] || crop[0] >= crop[2] || crop[1] >= crop[3])) {
-        const std::string message = fmt::format("the pixels {},{} to {},{} are not a part of the {}x{} picture", crop[0], crop[1],
-                                                crop[2], crop[3], size[0], size[1]);
+    if (good && (crop[0] < 0 || crop[1] < 0 || crop[2] > size[0] || crop[3] > size[1] || crop[0] >= crop[2] ||
+                 crop[1] >= crop[3])) {
+        const std::string message = fmt::format("the pixels {},{} to {},{} are not a part of the {}x{} picture",
+                                                crop[0], crop[1], crop[2], crop[3], size[0], size[1]);
         build.diagnostics.error(where, message, "the window must not be empty, nor larger than the picture");
         crop = {0, 0, size[0], size[1]};
     }
@@ -70,18 +74,22 @@ void build_film(FilmContext& film) {
     // pbrt-v4: a sensor's numbers are the light times exposure time times ISO / 100; clamped per sample, after that.
     Entity& camera = build.description.camera;
     Diagnostics quiet(*build.description.sources);  // the camera's own factory tells what is wrong with these
-    const float open = camera.parameters.get_float("shutteropen", 0.0f, quiet), close = camera.parameters.get_float("shutterclose", 1.0f, quiet);
+    const float open = camera.parameters.get_float("shutteropen", 0.0f, quiet),
+                close = camera.parameters.get_float("shutterclose", 1.0f, quiet);
     const float exposure = reader.has("exposuretime") ? reader.get_float("exposuretime") : close - open;
     film.record.lens.w = exposure > 0.0f ? exposure * reader.get_float("iso") / 100.0f : 1.0f;
     const float largest = reader.get_float("maxcomponentvalue");
     film.record.lens.z = std::isfinite(largest) && largest < 3e38f ? largest : 0.0f;
     const std::string sensor = reader.get_string("sensor");
     if (sensor != "cie1931")
-        build.diagnostics.unsupported(reader.location("sensor"), fmt::format("sensor \"{}\"", sensor), "\"cie1931\", which takes its place if skipped");
+        build.diagnostics.unsupported(reader.location("sensor"), fmt::format("sensor \"{}\"", sensor),
+                                      "\"cie1931\", which takes its place if skipped");
     if (reader.get_float("whitebalance") != 0.0f)
-        build.diagnostics.unsupported(reader.location("whitebalance"), "white balance", "0, which takes its place if skipped");
+        build.diagnostics.unsupported(reader.location("whitebalance"), "white balance",
+                                      "0, which takes its place if skipped");
     if (build.description.color_space != "srgb")
-        build.scene.notes.push_back(fmt::format("ColorSpace \"{}\": images are written in linear Rec.709 all the same", build.description.color_space));
+        build.scene.notes.push_back(fmt::format("ColorSpace \"{}\": images are written in linear Rec.709 all the same",
+                                                build.description.color_space));
 }
 
 void build_gbuffer(FilmContext& film) {
@@ -102,7 +110,9 @@ ParameterSpecs film_specs() {
         real("diagonal", 35.0, "of the sensor; has no effect on the cameras here").above(0).in("mm"),
         text("sensor", "cie1931", "spectral response; only cie1931 is known"),
         real("iso", 100.0, "sensitivity: the image is multiplied by iso / 100").above(0),
-        real("exposuretime", 1.0, "the image is multiplied by it; default: the camera's shutterclose - shutteropen").above(0).in("s"),
+        real("exposuretime", 1.0, "the image is multiplied by it; default: the camera's shutterclose - shutteropen")
+            .above(0)
+            .in("s"),
         real("whitebalance", 0.0, "colour temperature that becomes white; 0: none").at_least(0).in("K"),
         real("maxcomponentvalue", kLargest, "a sample's components are scaled down to at most this").above(0),
     };
@@ -110,12 +120,14 @@ ParameterSpecs film_specs() {
 
 ParameterSpecs gbuffer_specs() {
     ParameterSpecs specs = film_specs();
-    specs.push_back(text("coordinatesystem", "camera", "of normals and positions; here they are in world space").one_of({"camera", "world"}));
+    specs.push_back(text("coordinatesystem", "camera", "of normals and positions; here they are in world space")
+                        .one_of({"camera", "world"}));
     return specs;
 }
 
 const RegisterFilm rgb("rgb", "Linear Rec.709 colour.", film_specs(), build_film);
-const RegisterFilm gbuffer("gbuffer", "The same as rgb: every EXR can hold albedo, normals and depth.", gbuffer_specs(), build_gbuffer);
+const RegisterFilm gbuffer("gbuffer", "The same as rgb: every EXR can hold albedo, normals and depth.", gbuffer_specs(),
+                           build_gbuffer);
 
 }  // namespace
 

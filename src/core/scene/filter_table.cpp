@@ -25,7 +25,8 @@ void append_axis(const std::function<double(double)>& filter, double radius, std
         absolute += std::abs(node[i] + node[i + 1]);
         integral += node[i] + node[i + 1];
     }
-    if (!(integral > 0) || !std::isfinite(absolute)) throw std::invalid_argument("a pixel filter's integral is not positive");
+    if (!(integral > 0) || !std::isfinite(absolute))
+        throw std::invalid_argument("a pixel filter's integral is not positive");
     for (const double value : node) distributions.push_back(float(value / absolute));
     double below = 0;
     distributions.push_back(0.0f);
@@ -46,13 +47,12 @@ double gaussian_filter(double x, double radius, double sigma) {
 double mitchell_filter(double x, double radius, double b, double c) {
     const double y = std::abs(2 * x / radius);
     if (y <= 1) return ((12 - 9 * b - 6 * c) * y * y * y + (-18 + 12 * b + 6 * c) * y * y + (6 - 2 * b)) / 6;
-    if (y <= 2) return ((-b - 6 * c) * y * y * y + (6 * b + 30 * c) * y * y + (-12 * b - 48 * c) * y + (8 * b + 24 * c)) / 6;
+    if (y <= 2)
+        return ((-b - 6 * c) * y * y * y + (6 * b + 30 * c) * y * y + (-12 * b - 48 * c) * y + (8 * b + 24 * c)) / 6;
     return 0;
 }
 
-double sinc_filter(double x, double radius, double tau) {
-    return std::abs(x) > radius ? 0.0 : sinc(x) * sinc(x / tau);
-}
+double sinc_filter(double x, double radius, double tau) { return std::abs(x) > radius ? 0.0 : sinc(x) * sinc(x / tau); }
 
 uint32_t append_filter_table(const std::function<double(double)>& x_filter, double x_radius,
                              const std::function<double(double)>& y_filter, double y_radius,

@@ -14,7 +14,7 @@ class NameTable {
  public:
     struct Entry {
         std::string name;
-        Location first_use;             // unknown() while only defined
+        Location first_use;  // unknown() while only defined
         Location definition;
         uint32_t index = kNone;         // of what it names, once defined
         mutable bool reported = false;  // as undefined

@@ -32,14 +32,16 @@ uint32_t half_bits(float x) {
 // As core/kernel/texture.h decodes it.
 float from_half_bits(uint32_t h) {
     const uint32_t magnitude = h & 0x7fffu;
-    const float value = magnitude < 0x0400u ? float(magnitude) * 0x1p-24f : std::bit_cast<float>((magnitude << 13) + 0x38000000u);
+    const float value =
+        magnitude < 0x0400u ? float(magnitude) * 0x1p-24f : std::bit_cast<float>((magnitude << 13) + 0x38000000u);
     return (h & 0x8000u) ? -value : value;
 }
 
 uint32_t format_of(Image::Storage storage, bool grey) {
     if (storage == Image::Storage::kUint8) return grey ? kernel::TEXEL_R8 : kernel::TEXEL_RGBA8;
     if (grey) return kernel::TEXEL_R32F;
-    return storage == Image::Storage::kUint16 || storage == Image::Storage::kHalf ? kernel::TEXEL_RGBA16F : kernel::TEXEL_RGB32F;
+    return storage == Image::Storage::kUint16 || storage == Image::Storage::kHalf ? kernel::TEXEL_RGBA16F
+                                                                                  : kernel::TEXEL_RGB32F;
 }
 
 size_t words_of(uint32_t format, size_t pixels) {
@@ -65,7 +67,8 @@ float decode(double number, TexelEncoding encoding) {
 uint32_t ImageStore::reserve(size_t words, const std::string& name) {
     const size_t first = scene_.texels.size();
     if (first + words > std::numeric_limits<uint32_t>::max())
-        throw InputError(fmt::format("{}: the scene's images take more than 16 GiB, which is as much as kernels can index", name));
+        throw InputError(
+            fmt::format("{}: the scene's images take more than 16 GiB, which is as much as kernels can index", name));
     scene_.texels.resize(first + words);
     return uint32_t(first);
 }
@@ -83,12 +86,14 @@ uint32_t ImageStore::decode_table(TexelEncoding encoding) {
 uint32_t ImageStore::noise_permutation() {
     if (!noise_permutation_) {
         noise_permutation_ = reserve(std::size(kNoisePermutation), "the table of noise");
-        std::copy(std::begin(kNoisePermutation), std::end(kNoisePermutation), scene_.texels.begin() + *noise_permutation_);
+        std::copy(std::begin(kNoisePermutation), std::end(kNoisePermutation),
+                  scene_.texels.begin() + *noise_permutation_);
     }
     return *noise_permutation_;
 }
 
-ImageStore::Texels ImageStore::pack(const Image& image, TexelEncoding encoding, const std::string& name, Location where) {
+ImageStore::Texels ImageStore::pack(const Image& image, TexelEncoding encoding, const std::string& name,
+                                    Location where) {
     const bool grey = image.find_channel("R") < 0;
     Image converted;
     const bool as_is = grey ? image.channels == 1 : image.channel_names == std::vector<std::string>{"R", "G", "B"};
@@ -98,7 +103,8 @@ ImageStore::Texels ImageStore::pack(const Image& image, TexelEncoding encoding, 
     if (!integers)
         encoding = {TexelEncoding::Kind::kLinear, 1.0f};
     else if (encoding.kind == TexelEncoding::Kind::kOfFile)
-        encoding = {image.encoding == Image::Encoding::kSrgb ? TexelEncoding::Kind::kSrgb : TexelEncoding::Kind::kLinear, 1.0f};
+        encoding = {
+            image.encoding == Image::Encoding::kSrgb ? TexelEncoding::Kind::kSrgb : TexelEncoding::Kind::kLinear, 1.0f};
 
     Texels texels;
     texels.width = uint32_t(source.width);
@@ -112,7 +118,9 @@ ImageStore::Texels ImageStore::pack(const Image& image, TexelEncoding encoding, 
 
     // The first three channels, or a grey image's first.
     const size_t stride = size_t(source.channels);
-    const auto byte = [&](size_t i) { return uint32_t(std::lround(std::clamp(source.pixels[i], 0.0f, 1.0f) * 255.0f)); };
+    const auto byte = [&](size_t i) {
+        return uint32_t(std::lround(std::clamp(source.pixels[i], 0.0f, 1.0f) * 255.0f));
+    };
     const float largest = texels.format == kernel::TEXEL_RGBA16F ? kLargestHalf : std::numeric_limits<float>::max();
     size_t replaced = 0;
     const auto light = [&](size_t i) {
@@ -138,13 +146,15 @@ ImageStore::Texels ImageStore::pack(const Image& image, TexelEncoding encoding, 
         }
     }
     if (replaced > 0)
-        diagnostics_.warning(where, fmt::format("{} holds {} numbers that are not finite or too large for its format", name, replaced),
-                             "NaN is taken for 0, the others for the largest number");
+        diagnostics_.warning(
+            where, fmt::format("{} holds {} numbers that are not finite or too large for its format", name, replaced),
+            "NaN is taken for 0, the others for the largest number");
     return texels;
 }
 
 uint32_t ImageStore::record(const Texels& t, ImageLookup lookup) {
-    const std::array<uint32_t, 6> words{t.first, t.width, t.height, t.format | lookup.wrap << 8 | lookup.filtering << 16, t.decode, 0};
+    const std::array<uint32_t, 6> words{
+        t.first, t.width, t.height, t.format | lookup.wrap << 8 | lookup.filtering << 16, t.decode, 0};
     const auto [found, is_new] = records_.try_emplace(words, uint32_t(scene_.images.size()));
     if (is_new) scene_.images.push_back({{words[0], words[1], words[2], words[3]}, {words[4], 0, 0, 0}});
     return found->second;
@@ -157,11 +167,13 @@ uint32_t ImageStore::load(const std::string& path, TexelEncoding encoding, Image
     const auto key = std::pair(std::move(canonical), encoding);
     auto found = loaded_.find(key);
     if (found == loaded_.end())
-        found = loaded_.emplace(key, pack(read_image(path, {.linear = false, .rgb = false}), encoding, path, where)).first;
+        found =
+            loaded_.emplace(key, pack(read_image(path, {.linear = false, .rgb = false}), encoding, path, where)).first;
     return record(found->second, lookup);
 }
 
-uint32_t ImageStore::add(const Image& image, TexelEncoding encoding, ImageLookup lookup, const std::string& name, Location where) {
+uint32_t ImageStore::add(const Image& image, TexelEncoding encoding, ImageLookup lookup, const std::string& name,
+                         Location where) {
     return record(pack(image, encoding, name, where), lookup);
 }
 
@@ -181,7 +193,9 @@ std::vector<glm::vec3> ImageStore::pixels(uint32_t image) const {
                 pixels[p] = {from_half_bits(words[2 * p] & 0xffffu), from_half_bits(words[2 * p] >> 16),
                              from_half_bits(words[2 * p + 1] & 0xffffu)};
                 break;
-            case kernel::TEXEL_RGB32F: pixels[p] = {number(words[3 * p]), number(words[3 * p + 1]), number(words[3 * p + 2])}; break;
+            case kernel::TEXEL_RGB32F:
+                pixels[p] = {number(words[3 * p]), number(words[3 * p + 1]), number(words[3 * p + 2])};
+                break;
             default: pixels[p] = glm::vec3(number(words[p])); break;
         }
     }

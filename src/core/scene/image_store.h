@@ -42,7 +42,8 @@ class ImageStore {
     // are replaced, with a warning at `where`.
     uint32_t load(const std::string& path, TexelEncoding encoding, ImageLookup lookup, Location where);
     // The same for an image in memory; `encoding` applies to its storage as it does to a file's, `name` is for messages.
-    uint32_t add(const Image& image, TexelEncoding encoding, ImageLookup lookup, const std::string& name, Location where);
+    uint32_t add(const Image& image, TexelEncoding encoding, ImageLookup lookup, const std::string& name,
+                 Location where);
 
     // Where noise textures find their permutation of 0..255 in Scene::texels.
     uint32_t noise_permutation();

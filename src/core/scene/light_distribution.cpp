@@ -75,7 +75,8 @@ void choose_lights(Scene& scene, std::span<const float> powers) {
     const auto powerful = double(std::count_if(powers.begin(), powers.end(), [](float power) { return power > 0; }));
     std::vector<float> weights(powers.size());
     for (size_t i = 0; i < powers.size(); ++i) {
-        weights[i] = powers[i] > 0 ? float((1.0 - kEvenLightShare) * powers[i] / sum + kEvenLightShare / powerful) : 0.0f;
+        weights[i] =
+            powers[i] > 0 ? float((1.0 - kEvenLightShare) * powers[i] / sum + kEvenLightShare / powerful) : 0.0f;
     }
     const uint32_t offset = append_cdf(weights, scene.distributions);
     scene.record.lights.z = offset;

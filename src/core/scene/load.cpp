@@ -6,7 +6,9 @@ namespace lampyris {
 
 LoadedScene load_scene(const std::string& path, const BuildOptions& options, bool skip_unsupported) {
     using Clock = std::chrono::steady_clock;
-    const auto seconds = [](Clock::time_point since) { return std::chrono::duration<double>(Clock::now() - since).count(); };
+    const auto seconds = [](Clock::time_point since) {
+        return std::chrono::duration<double>(Clock::now() - since).count();
+    };
     LoadedScene loaded;
     loaded.sources = std::make_shared<Sources>();
     Diagnostics diagnostics(*loaded.sources);

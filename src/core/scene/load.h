@@ -11,8 +11,8 @@ namespace lampyris {
 struct LoadedScene {
     Scene scene;
     SceneSettings settings;
-    std::shared_ptr<Sources> sources;    // of locations that settings still hold (the integrator's parameters)
-    std::vector<std::string> warnings;   // formatted, with location
+    std::shared_ptr<Sources> sources;   // of locations that settings still hold (the integrator's parameters)
+    std::vector<std::string> warnings;  // formatted, with location
     double parse_s = 0.0, build_s = 0.0;
 };
 

@@ -36,7 +36,8 @@ inline NumberResult scan_decimal(const char* p, const char* end, Decimal& decima
     int64_t digits = p - integer;
     if (p != end && *p == '.') {
         const char* fraction = ++p;
-        for (; p != end && is_digit(*p); ++p) decimal.mantissa = 10 * decimal.mantissa + static_cast<uint64_t>(*p - '0');
+        for (; p != end && is_digit(*p); ++p)
+            decimal.mantissa = 10 * decimal.mantissa + static_cast<uint64_t>(*p - '0');
         decimal.exponent = fraction - p;
         digits += p - fraction;
     }

@@ -29,7 +29,8 @@ void report_count(const Parameter& parameter, const std::string& wanted, Diagnos
 }
 
 // The parameter of that name, marked as used; nothing where it is absent or of another type, which is reported.
-const Parameter* find_typed(const ParameterList& list, std::string_view name, ParameterType type, Diagnostics& diagnostics) {
+const Parameter* find_typed(const ParameterList& list, std::string_view name, ParameterType type,
+                            Diagnostics& diagnostics) {
     const Parameter* parameter = list.find(name);
     if (!parameter || parameter->type == type) return parameter;
     report_type(*parameter, type, diagnostics);
@@ -37,7 +38,8 @@ const Parameter* find_typed(const ParameterList& list, std::string_view name, Pa
 }
 
 template <typename T>
-T get_one(const ParameterList& list, std::string_view name, ParameterType type, T default_value, Diagnostics& diagnostics) {
+T get_one(const ParameterList& list, std::string_view name, ParameterType type, T default_value,
+          Diagnostics& diagnostics) {
     const Parameter* parameter = find_typed(list, name, type, diagnostics);
     if (!parameter) return default_value;
     const auto* values = std::get_if<std::vector<T>>(&parameter->values);
@@ -134,7 +136,8 @@ void ParameterList::add_defaults(const std::vector<Parameter>& defaults) {
     const size_t own = parameters.size();
     for (const Parameter& candidate : defaults) {
         const auto end = parameters.begin() + static_cast<ptrdiff_t>(own);
-        if (std::any_of(parameters.begin(), end, [&](const Parameter& p) { return p.name == candidate.name; })) continue;
+        if (std::any_of(parameters.begin(), end, [&](const Parameter& p) { return p.name == candidate.name; }))
+            continue;
         parameters.push_back(candidate);
         parameters.back().used = true;
     }

@@ -16,11 +16,11 @@ struct TypeInfo {
 };
 
 constexpr TypeInfo kTypes[] = {
-    {"bool", ParameterType::kBool, 1},       {"integer", ParameterType::kInteger, 1},
-    {"float", ParameterType::kFloat, 1},     {"point2", ParameterType::kPoint2, 2},
-    {"vector2", ParameterType::kVector2, 2}, {"point3", ParameterType::kPoint3, 3},
-    {"vector3", ParameterType::kVector3, 3}, {"normal", ParameterType::kNormal, 3},
-    {"rgb", ParameterType::kRgb, 3},         {"blackbody", ParameterType::kBlackbody, 1},
+    {"bool", ParameterType::kBool, 1},         {"integer", ParameterType::kInteger, 1},
+    {"float", ParameterType::kFloat, 1},       {"point2", ParameterType::kPoint2, 2},
+    {"vector2", ParameterType::kVector2, 2},   {"point3", ParameterType::kPoint3, 3},
+    {"vector3", ParameterType::kVector3, 3},   {"normal", ParameterType::kNormal, 3},
+    {"rgb", ParameterType::kRgb, 3},           {"blackbody", ParameterType::kBlackbody, 1},
     {"spectrum", ParameterType::kSpectrum, 2}, {"string", ParameterType::kString, 1},
     {"texture", ParameterType::kTexture, 1},
 };
@@ -32,9 +32,9 @@ struct Alias {
     bool accepted;
 };
 constexpr Alias kAliases[] = {
-    {"point", "point3", true}, {"vector", "vector3", true}, {"color", "rgb", true},    {"int", "integer", false},
-    {"boolean", "bool", false}, {"double", "float", false},  {"normal3", "normal", false}, {"vec3", "vector3", false},
-    {"str", "string", false},
+    {"point", "point3", true},    {"vector", "vector3", true}, {"color", "rgb", true},
+    {"int", "integer", false},    {"boolean", "bool", false},  {"double", "float", false},
+    {"normal3", "normal", false}, {"vec3", "vector3", false},  {"str", "string", false},
 };
 
 const TypeInfo* find_type(std::string_view name) {
@@ -159,9 +159,10 @@ bool ParameterParser::parse_declaration(Tokenizer& tokenizer, const Token& token
     }
     if (!info) {
         if (!old_format_->parameter_type(words[0], token.location))
-            diagnostics_->error(token.location, "unknown parameter type \"" + shown(words[0]) + "\"" +
-                                                    did_you_mean(words[0], type_names()),
-                                "types are " + list_of(type_names()));
+            diagnostics_->error(
+                token.location,
+                "unknown parameter type \"" + shown(words[0]) + "\"" + did_you_mean(words[0], type_names()),
+                "types are " + list_of(type_names()));
         return false;
     }
     parameter.type = info->type;
@@ -176,9 +177,10 @@ bool ParameterParser::missing_value(const Parameter& parameter, const Token& fou
 
 void ParameterParser::wrong_value(const Parameter& parameter, const Token& token, const char* expected) {
     const bool comma = token.kind == TokenKind::kWord && token.text.find(',') != std::string_view::npos;
-    const std::string found = token.kind == TokenKind::kString ? "the string \"" + shown(token.text) + "\""
-                                                               : "\"" + shown(token.text) + "\"";
-    diagnostics_->error(token.location, std::string("expected ") + expected + " for " + quoted(parameter) + ", found " + found,
+    const std::string found =
+        token.kind == TokenKind::kString ? "the string \"" + shown(token.text) + "\"" : "\"" + shown(token.text) + "\"";
+    diagnostics_->error(token.location,
+                        std::string("expected ") + expected + " for " + quoted(parameter) + ", found " + found,
                         comma ? "blanks separate values, not commas" : "");
 }
 
@@ -252,8 +254,9 @@ bool ParameterParser::parse_numbers(Tokenizer& tokenizer, const Parameter& param
             }
             if (result.status == NumberStatus::kOutOfRange) {
                 if (good)
-                    diagnostics_->error(tokenizer.location(p), "number out of range for a 32-bit " +
-                                                                   std::string(std::is_same_v<T, float> ? "float" : "integer"));
+                    diagnostics_->error(tokenizer.location(p),
+                                        "number out of range for a 32-bit " +
+                                            std::string(std::is_same_v<T, float> ? "float" : "integer"));
                 good = false;
                 p = result.end;
                 if (!bracketed) break;
@@ -264,8 +267,9 @@ bool ParameterParser::parse_numbers(Tokenizer& tokenizer, const Parameter& param
         tokenizer.set_cursor(p);
         if (bracketed && ends_unclosed(tokenizer, parameter, open)) return false;
         const Token token = tokenizer.peek();
-        if (!bracketed && (token.kind == TokenKind::kEnd || token.kind == TokenKind::kClose || looks_like_declaration(token) ||
-                           (token.kind == TokenKind::kWord && is_directive(token.text))))
+        if (!bracketed &&
+            (token.kind == TokenKind::kEnd || token.kind == TokenKind::kClose || looks_like_declaration(token) ||
+             (token.kind == TokenKind::kWord && is_directive(token.text))))
             return missing_value(parameter, token);
         if (good) wrong_value(parameter, token, expected);
         good = false;
@@ -320,8 +324,8 @@ bool ParameterParser::parse_word(Tokenizer& tokenizer, const Token& token, Param
         return true;
     }
     if (token.kind != TokenKind::kString) {
-        wrong_value(parameter, token, parameter.type == ParameterType::kTexture ? "a texture's name in quotes"
-                                                                                : "a string in quotes");
+        wrong_value(parameter, token,
+                    parameter.type == ParameterType::kTexture ? "a texture's name in quotes" : "a string in quotes");
         return false;
     }
     std::get<std::vector<std::string>>(parameter.values).push_back(tokenizer.string_value(token));
@@ -333,18 +337,19 @@ bool ParameterParser::check_count(const Parameter& parameter) {
     const TypeInfo& info = info_of(parameter.type);
     if (!floats) return true;
     if (floats->size() % info.tuple != 0) {
-        diagnostics_->error(parameter.location,
-                            "parameter " + quoted(parameter) + " has " + std::to_string(floats->size()) + " numbers",
-                            parameter.type == ParameterType::kSpectrum
-                                ? "a spectrum is pairs of wavelength (nm) and value"
-                                : "type " + std::string(info.name) + " takes a multiple of " + std::to_string(info.tuple));
+        diagnostics_->error(
+            parameter.location,
+            "parameter " + quoted(parameter) + " has " + std::to_string(floats->size()) + " numbers",
+            parameter.type == ParameterType::kSpectrum
+                ? "a spectrum is pairs of wavelength (nm) and value"
+                : "type " + std::string(info.name) + " takes a multiple of " + std::to_string(info.tuple));
         return false;
     }
     if (parameter.type == ParameterType::kSpectrum) {
         for (size_t i = 2; i < floats->size(); i += 2) {
             if ((*floats)[i] > (*floats)[i - 2]) continue;
-            diagnostics_->error(parameter.location, "the wavelengths of " + quoted(parameter) + " do not increase at pair " +
-                                                        std::to_string(i / 2 + 1));
+            diagnostics_->error(parameter.location, "the wavelengths of " + quoted(parameter) +
+                                                        " do not increase at pair " + std::to_string(i / 2 + 1));
             return false;
         }
     }

@@ -9,7 +9,8 @@ namespace lampyris {
 
 class ParameterParser {
  public:
-    ParameterParser(Diagnostics& diagnostics, OldFormat& old_format) : diagnostics_(&diagnostics), old_format_(&old_format) {}
+    ParameterParser(Diagnostics& diagnostics, OldFormat& old_format)
+        : diagnostics_(&diagnostics), old_format_(&old_format) {}
     // Up to the first token that starts no parameter. What is wrong is reported, and reading goes on behind it.
     std::vector<Parameter> parse(Tokenizer& tokenizer, std::string_view color_space);
 

@@ -230,8 +230,9 @@ uint32_t Parser::resolve(const NameTable& table, uint32_t id, const char* what) 
     const NameTable::Entry& entry = table[id];
     if (entry.index == kNone && !entry.reported) {
         entry.reported = true;
-        diagnostics_->error(entry.first_use, std::string("no ") + what + " is named \"" + shown(entry.name) + "\"" +
-                                                 (diagnostics_->full() ? "" : did_you_mean(entry.name, table.defined())));
+        diagnostics_->error(entry.first_use,
+                            std::string("no ") + what + " is named \"" + shown(entry.name) + "\"" +
+                                (diagnostics_->full() ? "" : did_you_mean(entry.name, table.defined())));
     }
     return entry.index;
 }
@@ -248,7 +249,8 @@ void Parser::resolve_names() {
         for (ShapeDescription& shape : object.shapes) resolve_shape(shape);
     for (LightDescription& light : scene_.lights) light.medium = resolve(media_, light.medium, "medium");
     scene_.camera.medium = resolve(media_, scene_.camera.medium, "medium");
-    for (InstanceDescription& instance : scene_.instances) instance.object = resolve(objects_, instance.object, "object");
+    for (InstanceDescription& instance : scene_.instances)
+        instance.object = resolve(objects_, instance.object, "object");
 }
 
 namespace {

@@ -54,9 +54,10 @@ constexpr Renamed kEntities[] = {
 
 bool OldFormat::found(const std::string& what, const std::string& instead, Location location) {
     if (!reported_)
-        diagnostics_->error(location, "this is a scene in the format of pbrt-v3: pbrt-v4 has no " + what,
-                            (instead.empty() ? "" : "instead: " + instead + "; ") +
-                                std::string("pbrt-v4's own program upgrades a scene: pbrt --upgrade old.pbrt > new.pbrt"));
+        diagnostics_->error(
+            location, "this is a scene in the format of pbrt-v3: pbrt-v4 has no " + what,
+            (instead.empty() ? "" : "instead: " + instead + "; ") +
+                std::string("pbrt-v4's own program upgrades a scene: pbrt --upgrade old.pbrt > new.pbrt"));
     reported_ = true;
     return true;
 }

@@ -49,8 +49,12 @@ struct Attribute {
 class PlyReader {
  public:
     PlyReader(const std::string& name, std::string_view bytes)
-        : name_(name), bytes_(bytes), header_(parse_ply_header(name, bytes)), p_(bytes.data() + header_.body),
-          end_(bytes.data() + bytes.size()), ascii_(header_.format == PlyFormat::kAscii),
+        : name_(name),
+          bytes_(bytes),
+          header_(parse_ply_header(name, bytes)),
+          p_(bytes.data() + header_.body),
+          end_(bytes.data() + bytes.size()),
+          ascii_(header_.format == PlyFormat::kAscii),
           swap_((header_.format == PlyFormat::kBigEndian) != (std::endian::native == std::endian::big)) {}
 
     PlyMesh read() {
@@ -60,7 +64,8 @@ class PlyReader {
             has_faces = has_faces || element.name == "face";
         }
         if (!has_vertices || !has_faces)
-            fail_in_header(header_.body, std::string("the file has no element \"") + (has_vertices ? "face" : "vertex") + "\"");
+            fail_in_header(header_.body,
+                           std::string("the file has no element \"") + (has_vertices ? "face" : "vertex") + "\"");
         for (const PlyElement& element : header_.elements) {
             check_size(element);
             if (element.name == "vertex")
@@ -95,7 +100,8 @@ class PlyReader {
         uint64_t least = 0;  // bytes of one row
         for (const PlyProperty& property : element.properties)
             least += ascii_ ? 2 : size_of(property.is_list ? property.count_type : property.type);
-        const auto left = static_cast<uint64_t>(end_ - p_) + (ascii_ ? 1 : 0);  // the last value needs no blank after it
+        const auto left =
+            static_cast<uint64_t>(end_ - p_) + (ascii_ ? 1 : 0);  // the last value needs no blank after it
         if (least > 0 && element.count > left / least) fail_truncated(element);
     }
 
@@ -129,7 +135,8 @@ class PlyReader {
             result = parse_double(p_, end_, value);
         }
         if (result.status == NumberStatus::kNotANumber)
-            fail(p_, "expected a number, found \"" + shown({p_, static_cast<size_t>(std::max(result.end - p_, ptrdiff_t(1)))}) + "\"");
+            fail(p_, "expected a number, found \"" +
+                         shown({p_, static_cast<size_t>(std::max(result.end - p_, ptrdiff_t(1)))}) + "\"");
         if (result.status == NumberStatus::kOutOfRange) fail(p_, "number out of range");
         p_ = result.end;
         return value;
@@ -213,7 +220,8 @@ class PlyReader {
             if (bad == values.end()) continue;
             const auto vertex = static_cast<size_t>(bad - values.begin()) / attribute.components;
             const std::string& property =
-                element.properties[attribute.property[static_cast<size_t>(bad - values.begin()) % attribute.components]].name;
+                element.properties[attribute.property[static_cast<size_t>(bad - values.begin()) % attribute.components]]
+                    .name;
             fail(start, "property \"" + property + "\" of vertex " + std::to_string(vertex) + " is not a finite float");
         }
     }
@@ -222,7 +230,8 @@ class PlyReader {
     void read_packed_vertices(const PlyElement& element, const std::vector<Attribute>& attributes) {
         const size_t stride = stride_of(element);
         std::vector<size_t> offsets(element.properties.size());
-        for (size_t i = 1; i < offsets.size(); ++i) offsets[i] = offsets[i - 1] + size_of(element.properties[i - 1].type);
+        for (size_t i = 1; i < offsets.size(); ++i)
+            offsets[i] = offsets[i - 1] + size_of(element.properties[i - 1].type);
         for (const Attribute& attribute : attributes) {
             bool plain = !swap_;
             for (size_t c = 0; c < attribute.components; ++c) {
@@ -264,7 +273,8 @@ class PlyReader {
                 const PlyProperty& property = element.properties[i];
                 const auto [attribute, component] = targets[i];
                 if (attribute)
-                    (*attribute->values)[row * attribute->components + component] = to_float(read_value(element, property.type));
+                    (*attribute->values)[row * attribute->components + component] =
+                        to_float(read_value(element, property.type));
                 else
                     skip_values(element, property.type, property.is_list ? read_count(element, property) : 1);
             }
@@ -282,7 +292,8 @@ class PlyReader {
             if (!property.is_list && property.name == "face_indices" && is_integer(property.type)) face_index = i;
         }
         if (list == kAbsent) fail_in_header(element.offset, "faces need the property list vertex_indices");
-        if (element.count > std::numeric_limits<uint32_t>::max()) fail_in_header(element.offset, "more than 2^32 - 1 faces");
+        if (element.count > std::numeric_limits<uint32_t>::max())
+            fail_in_header(element.offset, "more than 2^32 - 1 faces");
         const PlyProperty& vertices = element.properties[list];
         const bool usual = !ascii_ && !swap_ && element.properties.size() == 1 && size_of(vertices.count_type) == 1 &&
                            size_of(vertices.type) == sizeof(uint32_t);
@@ -356,11 +367,12 @@ class PlyReader {
         uint32_t largest = 0;
         for (uint32_t index : indices) largest = std::max(largest, index);
         if (indices.empty() || largest < vertex_count) return;
-        const auto bad = std::find_if(indices.begin(), indices.end(), [&](uint32_t index) { return index >= vertex_count; });
+        const auto bad =
+            std::find_if(indices.begin(), indices.end(), [&](uint32_t index) { return index >= vertex_count; });
         throw InputError(name_ + ": error: " + what + " " +
-                         std::to_string(static_cast<size_t>(bad - indices.begin()) / per_face) + " has the vertex index " +
-                         std::to_string(static_cast<int32_t>(*bad)) + ", but there are " + std::to_string(vertex_count) +
-                         " vertices");
+                         std::to_string(static_cast<size_t>(bad - indices.begin()) / per_face) +
+                         " has the vertex index " + std::to_string(static_cast<int32_t>(*bad)) + ", but there are " +
+                         std::to_string(vertex_count) + " vertices");
     }
 
     const std::string& name_;

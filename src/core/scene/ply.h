@@ -10,9 +10,9 @@
 namespace lampyris {
 
 struct PlyMesh {
-    std::vector<float> positions;  // x y z of each vertex
-    std::vector<float> normals;    // nx ny nz, or empty
-    std::vector<float> uvs;        // u v, or empty
+    std::vector<float> positions;     // x y z of each vertex
+    std::vector<float> normals;       // nx ny nz, or empty
+    std::vector<float> uvs;           // u v, or empty
     std::vector<uint32_t> triangles;  // three vertices each
     // Four vertices each, in the order of a bilinear patch's corners (0,0) (1,0) (0,1) (1,1), as pbrt makes of a quad: these
     // are the file's 1st, 2nd, 4th and 3rd. As two triangles: the 1st, 2nd, 4th and the 1st, 4th, 3rd of the four here.

@@ -14,11 +14,11 @@ struct TypeName {
     PlyType type;
 };
 constexpr TypeName kTypeNames[] = {
-    {"char", PlyType::kInt8},      {"uchar", PlyType::kUint8},   {"short", PlyType::kInt16},
-    {"ushort", PlyType::kUint16},  {"int", PlyType::kInt32},     {"uint", PlyType::kUint32},
-    {"float", PlyType::kFloat32},  {"double", PlyType::kFloat64}, {"int8", PlyType::kInt8},
-    {"uint8", PlyType::kUint8},    {"int16", PlyType::kInt16},   {"uint16", PlyType::kUint16},
-    {"int32", PlyType::kInt32},    {"uint32", PlyType::kUint32}, {"float32", PlyType::kFloat32},
+    {"char", PlyType::kInt8},       {"uchar", PlyType::kUint8},    {"short", PlyType::kInt16},
+    {"ushort", PlyType::kUint16},   {"int", PlyType::kInt32},      {"uint", PlyType::kUint32},
+    {"float", PlyType::kFloat32},   {"double", PlyType::kFloat64}, {"int8", PlyType::kInt8},
+    {"uint8", PlyType::kUint8},     {"int16", PlyType::kInt16},    {"uint16", PlyType::kUint16},
+    {"int32", PlyType::kInt32},     {"uint32", PlyType::kUint32},  {"float32", PlyType::kFloat32},
     {"float64", PlyType::kFloat64},
 };
 
@@ -31,7 +31,8 @@ class HeaderParser {
             fail(0, "this is not a PLY file: its first line is not \"ply\"");
         bool has_format = false;
         while (true) {
-            if (!next_line()) fail(bytes_.size(), "the header does not end", "a PLY header ends with a line \"end_header\"");
+            if (!next_line())
+                fail(bytes_.size(), "the header does not end", "a PLY header ends with a line \"end_header\"");
             if (words_.empty() || words_[0] == "comment" || words_[0] == "obj_info") continue;
             if (words_[0] == "end_header") break;
             if (words_[0] == "format") {
@@ -42,11 +43,13 @@ class HeaderParser {
             } else if (words_[0] == "property") {
                 parse_property();
             } else {
-                fail(offset_of(0), "unknown header line \"" + shown(words_[0]) + "\"" +
-                                       did_you_mean(words_[0], {"format", "element", "property", "comment", "end_header"}));
+                fail(offset_of(0),
+                     "unknown header line \"" + shown(words_[0]) + "\"" +
+                         did_you_mean(words_[0], {"format", "element", "property", "comment", "end_header"}));
             }
         }
-        if (!has_format) fail(0, "the header has no \"format\" line", "write format binary_little_endian 1.0, for instance");
+        if (!has_format)
+            fail(0, "the header has no \"format\" line", "write format binary_little_endian 1.0, for instance");
         header_.body = position_;
         return std::move(header_);
     }
@@ -88,7 +91,8 @@ class HeaderParser {
     }
 
     void parse_element() {
-        if (words_.size() != 3) fail(line_, "an element has a name and a count", "write element vertex 8, for instance");
+        if (words_.size() != 3)
+            fail(line_, "an element has a name and a count", "write element vertex 8, for instance");
         PlyElement element;
         element.name = words_[1];
         element.offset = line_;
@@ -96,9 +100,11 @@ class HeaderParser {
         if (code != std::errc() || stop != words_[2].data() + words_[2].size())
             fail(offset_of(2), "\"" + shown(words_[2]) + "\" is no count of elements");
         for (const PlyElement& other : header_.elements)
-            if (other.name == element.name) fail(offset_of(1), "element \"" + shown(element.name) + "\" is declared twice");
+            if (other.name == element.name)
+                fail(offset_of(1), "element \"" + shown(element.name) + "\" is declared twice");
         constexpr size_t kMaxElements = 1000, kMaxProperties = 1000;
-        if (header_.elements.size() >= kMaxElements) fail(line_, "more than " + std::to_string(kMaxElements) + " elements");
+        if (header_.elements.size() >= kMaxElements)
+            fail(line_, "more than " + std::to_string(kMaxElements) + " elements");
         max_properties_ = kMaxProperties;
         header_.elements.push_back(std::move(element));
     }
@@ -128,7 +134,8 @@ class HeaderParser {
         property.name = words_.back();
         for (const PlyProperty& other : element.properties)
             if (other.name == property.name)
-                fail(line_, "property \"" + shown(property.name) + "\" of \"" + shown(element.name) + "\" is declared twice");
+                fail(line_,
+                     "property \"" + shown(property.name) + "\" of \"" + shown(element.name) + "\" is declared twice");
         if (element.properties.size() >= max_properties_)
             fail(line_, "more than " + std::to_string(max_properties_) + " properties of one element");
         element.properties.push_back(std::move(property));
@@ -158,6 +165,8 @@ void fail_at_text(const std::string& name, std::string_view bytes, size_t offset
     throw InputError(message);  // not reached
 }
 
-PlyHeader parse_ply_header(const std::string& name, std::string_view bytes) { return HeaderParser(name, bytes).parse(); }
+PlyHeader parse_ply_header(const std::string& name, std::string_view bytes) {
+    return HeaderParser(name, bytes).parse();
+}
 
 }  // namespace lampyris

@@ -36,8 +36,8 @@ struct PlyHeader {
 };
 
 // Throws InputError for a place in a PLY file's text (header, ascii body): with line, column and excerpt.
-[[noreturn]] void fail_at_text(const std::string& name, std::string_view bytes, size_t offset, const std::string& message,
-                               const std::string& hint = {});
+[[noreturn]] void fail_at_text(const std::string& name, std::string_view bytes, size_t offset,
+                               const std::string& message, const std::string& hint = {});
 
 PlyHeader parse_ply_header(const std::string& name, std::string_view bytes);
 

@@ -19,10 +19,10 @@ struct GeometrySet {
 struct Scene {
     kernel::SceneRecord record{};
     std::vector<kernel::GeometryRecord> geometries;
-    std::vector<uint32_t> indices;   // 3 a triangle, 4 a patch; relative to the geometry's first vertex
-    std::vector<float> positions;    // 3 a vertex; at least 16 readable bytes past the last one (Embree reads them)
-    std::vector<float> normals;      // 3 a vertex
-    std::vector<float> uvs;          // 2 a vertex
+    std::vector<uint32_t> indices;  // 3 a triangle, 4 a patch; relative to the geometry's first vertex
+    std::vector<float> positions;   // 3 a vertex; at least 16 readable bytes past the last one (Embree reads them)
+    std::vector<float> normals;     // 3 a vertex
+    std::vector<float> uvs;         // 2 a vertex
     std::vector<kernel::TransformRecord> transforms;
     std::vector<kernel::InstanceRecord> instances;  // [0] is the world
     std::vector<kernel::MaterialRecord> materials;
@@ -31,11 +31,11 @@ struct Scene {
     std::vector<uint32_t> texels;
     std::vector<kernel::LightRecord> lights;
     std::vector<float> distributions;
-    std::vector<GeometrySet> sets;              // [0] is the world
-    std::vector<uint32_t> instance_sets;        // set of each instance; [0] = 0
+    std::vector<GeometrySet> sets;        // [0] is the world
+    std::vector<uint32_t> instance_sets;  // set of each instance; [0] = 0
 
     Effects effects;
-    std::string name;  // file name of the scene
+    std::string name;                      // file name of the scene
     std::vector<std::string> notes;        // what was mapped or ignored, and is to be said ("Sampler zsobol: ...")
     std::vector<std::string> unsupported;  // with --skip-unsupported: what was left out
     uint64_t hash = 0;                     // of everything above

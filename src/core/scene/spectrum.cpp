@@ -17,7 +17,8 @@ constexpr Primaries kAces{{0.7347, 0.2653}, {0.0, 1.0}, {0.0001, -0.077}, {0.321
 
 // Bradford's chromatic adaptation (as in ICC.1:2010, annex E).
 glm::dmat3 adapt(glm::dvec2 from, glm::dvec2 to) {
-    const glm::dmat3 cone = glm::transpose(glm::dmat3(0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296));
+    const glm::dmat3 cone =
+        glm::transpose(glm::dmat3(0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296));
     const glm::dvec3 scale = (cone * xyz_of(to)) / (cone * xyz_of(from));
     return glm::inverse(cone) * glm::dmat3(scale.x, 0, 0, 0, scale.y, 0, 0, 0, scale.z) * cone;
 }
@@ -34,7 +35,8 @@ glm::dvec3 integrate_xyz(const std::function<float(float)>& spectrum) {
 
 float SampledSpectrum::at(float wavelength) const {
     if (wavelengths.empty() || wavelength < wavelengths.front() || wavelength > wavelengths.back()) return 0.0f;
-    const size_t next = size_t(std::upper_bound(wavelengths.begin(), wavelengths.end(), wavelength) - wavelengths.begin());
+    const size_t next =
+        size_t(std::upper_bound(wavelengths.begin(), wavelengths.end(), wavelength) - wavelengths.begin());
     if (next == wavelengths.size()) return values.back();
     if (next == 0) return values.front();
     const float t = (wavelength - wavelengths[next - 1]) / (wavelengths[next] - wavelengths[next - 1]);
@@ -51,7 +53,9 @@ float blackbody(float wavelength, float kelvin) {
     constexpr double kC1 = 2.0 * 6.62607015e-34 * 299792458.0 * 299792458.0;
     constexpr double kC2 = 6.62607015e-34 * 299792458.0 / 1.380649e-23;
     if (!(kelvin > 0.0f)) return 0.0f;
-    const auto planck = [&](double metres) { return kC1 / (std::pow(metres, 5.0) * std::expm1(kC2 / (metres * double(kelvin)))); };
+    const auto planck = [&](double metres) {
+        return kC1 / (std::pow(metres, 5.0) * std::expm1(kC2 / (metres * double(kelvin))));
+    };
     return float(planck(double(wavelength) * 1e-9) / planck(2.8977721e-3 / double(kelvin)));
 }
 

@@ -103,7 +103,8 @@ ConductorRgb conductor_rgb(const SampledSpectrum& eta, const SampledSpectrum& k)
     const glm::vec3 colour = glm::clamp(reflectance_rgb(reflectance), glm::vec3(0.0f), glm::vec3(0.9999f));
     glm::dvec3 sum(0.0), weight(0.0);
     for (float w = kFirstWavelength; w <= kLastWavelength; w += 1.0f) {
-        const glm::dvec3 sensitivity = glm::max(glm::dvec3(rec709_from_xyz(cie_xyz(w) * illuminant_d65(w))), glm::dvec3(0.0));
+        const glm::dvec3 sensitivity =
+            glm::max(glm::dvec3(rec709_from_xyz(cie_xyz(w) * illuminant_d65(w))), glm::dvec3(0.0));
         sum += sensitivity * double(held(eta, w));
         weight += sensitivity;
     }

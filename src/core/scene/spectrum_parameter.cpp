@@ -22,7 +22,8 @@ Location place_of(const Parameter& parameter) {
 std::optional<SampledSpectrum> from_pairs(const std::vector<float>& pairs, Location where, const std::string& what,
                                           Diagnostics& diagnostics) {
     if (pairs.empty() || pairs.size() % 2 != 0) {
-        diagnostics.error(where, fmt::format("{} has {} numbers", what, pairs.size()), "pairs of wavelength (nm) and value");
+        diagnostics.error(where, fmt::format("{} has {} numbers", what, pairs.size()),
+                          "pairs of wavelength (nm) and value");
         return {};
     }
     SampledSpectrum spectrum;
@@ -70,7 +71,8 @@ std::optional<SampledSpectrum> from_file(const std::string& path, Location where
 std::optional<glm::vec3> rgb_value(const Parameter& parameter, SpectrumUse use, Diagnostics& diagnostics) {
     const auto* numbers = std::get_if<std::vector<float>>(&parameter.values);
     if (!numbers || numbers->size() != 3) {
-        diagnostics.error(place_of(parameter), fmt::format("\"{}\" has {} numbers", parameter.name, numbers ? numbers->size() : 0),
+        diagnostics.error(place_of(parameter),
+                          fmt::format("\"{}\" has {} numbers", parameter.name, numbers ? numbers->size() : 0),
                           "an rgb has 3");
         return {};
     }
@@ -123,7 +125,8 @@ std::optional<glm::vec3> spectrum_rgb(const Parameter& parameter, SpectrumUse us
                                       Diagnostics& diagnostics) {
     if (parameter.type == ParameterType::kRgb) return rgb_value(parameter, use, diagnostics);
     if (parameter.type != ParameterType::kSpectrum && parameter.type != ParameterType::kBlackbody) {
-        diagnostics.error(parameter.location, fmt::format("\"{}\" is of type {}", parameter.name, type_name(parameter.type)),
+        diagnostics.error(parameter.location,
+                          fmt::format("\"{}\" is of type {}", parameter.name, type_name(parameter.type)),
                           "rgb, blackbody or spectrum");
         return {};
     }

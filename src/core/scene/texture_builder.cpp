@@ -52,21 +52,25 @@ void TextureBuilder::define(TextureDescription& description) {
         ParameterReader reader(texture_registry().find_info(description.type)->parameters, description, diagnostics);
         TextureContext context{*this, description, reader};
         if (description.world_from_texture.animated())
-            diagnostics.warning(description.location, fmt::format("texture \"{}\" does not move", shown(description.name)),
+            diagnostics.warning(description.location,
+                                fmt::format("texture \"{}\" does not move", shown(description.name)),
                                 "the transform at the start of the shutter's interval holds");
         texture.program = (*factory)(context);
         reader.finish(fmt::format("texture \"{}\"", description.type));
     } else if (description.type == "ptex") {
-        diagnostics.unsupported(description.type_location, "texture \"ptex\"", "without it, the texture is a grey of 0.5");
+        diagnostics.unsupported(description.type_location, "texture \"ptex\"",
+                                "without it, the texture is a grey of 0.5");
     } else {
         const auto [message, hint] = texture_registry().unknown(description.type);
         diagnostics.error(description.type_location, message, hint);
     }
     const auto [place, is_new] = textures_[description.is_spectrum].try_emplace(description.name, std::move(texture));
     if (!is_new)
-        diagnostics.error(description.location,
-                          fmt::format("{} texture \"{}\" is defined twice", type_word(description.is_spectrum), shown(description.name)),
-                          fmt::format("the first time at {}", context_.description.sources->describe(place->second.location)));
+        diagnostics.error(
+            description.location,
+            fmt::format("{} texture \"{}\" is defined twice", type_word(description.is_spectrum),
+                        shown(description.name)),
+            fmt::format("the first time at {}", context_.description.sources->describe(place->second.location)));
 }
 
 TextureBuilder::Texture* TextureBuilder::find(const std::string& name, bool is_spectrum, Location where) {
@@ -75,10 +79,11 @@ TextureBuilder::Texture* TextureBuilder::find(const std::string& name, bool is_s
     if (const auto found = textures.find(name); found != textures.end()) return &found->second;
     const char* wanted = type_word(is_spectrum);
     if (const auto other = textures_[!is_spectrum].find(name); other != textures_[!is_spectrum].end()) {
-        context_.diagnostics.error(where,
-                                   fmt::format("\"{}\" is a {} texture, and this takes a {} texture", shown(name),
-                                               type_word(!is_spectrum), wanted),
-                                   fmt::format("it is defined at {}", context_.description.sources->describe(other->second.location)));
+        context_.diagnostics.error(
+            where,
+            fmt::format("\"{}\" is a {} texture, and this takes a {} texture", shown(name), type_word(!is_spectrum),
+                        wanted),
+            fmt::format("it is defined at {}", context_.description.sources->describe(other->second.location)));
         return nullptr;
     }
     std::vector<std::string> names;
@@ -88,8 +93,8 @@ TextureBuilder::Texture* TextureBuilder::find(const std::string& name, bool is_s
     for (const TextureDescription& later : context_.description.textures)
         if (later.name == name && later.is_spectrum == is_spectrum)
             hint = fmt::format("it is defined only at {}", context_.description.sources->describe(later.location));
-    context_.diagnostics.error(where, fmt::format("there is no {} texture \"{}\"{}", wanted, shown(name), did_you_mean(name, names)),
-                               hint);
+    context_.diagnostics.error(
+        where, fmt::format("there is no {} texture \"{}\"{}", wanted, shown(name), did_you_mean(name, names)), hint);
     return nullptr;
 }
 
@@ -108,12 +113,14 @@ TextureProgram TextureBuilder::operand(ParameterReader& reader, std::string_view
     const bool is_color = parameter->type == ParameterType::kRgb || parameter->type == ParameterType::kSpectrum ||
                           parameter->type == ParameterType::kBlackbody;
     if (is_spectrum && is_color)
-        return constant_program(spectrum_rgb(*parameter, SpectrumUse::kUnbounded, context_.description.directory, context_.diagnostics)
-                                    .value_or(glm::vec3(absent)));
+        return constant_program(
+            spectrum_rgb(*parameter, SpectrumUse::kUnbounded, context_.description.directory, context_.diagnostics)
+                .value_or(glm::vec3(absent)));
     if (is_spectrum) {
-        context_.diagnostics.error(parameter->location,
-                                   fmt::format("\"{}\" of a spectrum texture is of type {}", parameter->name, type_name(parameter->type)),
-                                   fmt::format("write \"rgb {}\", or another spectrum, or \"texture {}\"", parameter->name, parameter->name));
+        context_.diagnostics.error(
+            parameter->location,
+            fmt::format("\"{}\" of a spectrum texture is of type {}", parameter->name, type_name(parameter->type)),
+            fmt::format("write \"rgb {}\", or another spectrum, or \"texture {}\"", parameter->name, parameter->name));
         return constant_program(glm::vec3(absent));
     }
     return constant_program(glm::vec3(reader.entity().parameters.get_float(name, absent, context_.diagnostics)));
@@ -128,8 +135,8 @@ uint32_t TextureBuilder::request_image(ImageRequest request) {
             for (const auto& entry : std::filesystem::directory_iterator(path.parent_path(), ignored))
                 near.push_back(entry.path().filename().string());
         std::sort(near.begin(), near.end());
-        context_.diagnostics.error(request.location,
-                                   fmt::format("there is no image file {}{}", shown(request.path), did_you_mean(path.filename().string(), near)));
+        context_.diagnostics.error(request.location, fmt::format("there is no image file {}{}", shown(request.path),
+                                                                 did_you_mean(path.filename().string(), near)));
         failed_.push_back(request.path);
     }
     requests_.push_back(std::move(request));
@@ -167,15 +174,22 @@ uint32_t TextureBuilder::named_program(const std::string& name, bool is_spectrum
     Texture* texture = find(name, is_spectrum, where);
     if (!texture) return kNone;
     if (texture->emitted == kNone)
-        texture->emitted = emit(texture->program, fmt::format("{} (Texture \"{}\")", context_.description.sources->describe(texture->location), name));
+        texture->emitted =
+            emit(texture->program,
+                 fmt::format("{} (Texture \"{}\")", context_.description.sources->describe(texture->location), name));
     return texture->emitted;
 }
 
-uint32_t TextureBuilder::float_program(const std::string& name, Location where) { return named_program(name, false, where); }
-uint32_t TextureBuilder::color_program(const std::string& name, Location where) { return named_program(name, true, where); }
+uint32_t TextureBuilder::float_program(const std::string& name, Location where) {
+    return named_program(name, false, where);
+}
+uint32_t TextureBuilder::color_program(const std::string& name, Location where) {
+    return named_program(name, true, where);
+}
 
 uint32_t TextureBuilder::image_program(const std::string& filename, glm::vec3 scale, Location where) {
-    const auto [found, is_new] = image_programs_.try_emplace(fmt::format("{} {} {} {}", scale.x, scale.y, scale.z, filename), kNone);
+    const auto [found, is_new] =
+        image_programs_.try_emplace(fmt::format("{} {} {} {}", scale.x, scale.y, scale.z, filename), kNone);
     if (!is_new) return found->second;
     kernel::TextureOp op{};
     op.data = {kernel::TEXTURE_IMAGE, kernel::MAPPING_UV << 8, 0, 0};

@@ -69,7 +69,7 @@ class TextureBuilder {
     std::unique_ptr<ImageStore> images_;
     std::vector<ImageRequest> requests_;
     std::vector<std::string> failed_;  // images that were reported
-    Textures textures_[2];  // float, spectrum: names of one kind do not hide the other's
+    Textures textures_[2];             // float, spectrum: names of one kind do not hide the other's
     std::map<std::string, uint32_t> image_programs_;
     bool defined_ = false;
 };

@@ -11,7 +11,8 @@ namespace lampyris {
 
 namespace {
 
-constexpr const char* kMappings[] = {"uv", "spherical", "cylindrical", "planar"};  // in order of kernel::MAPPING_*, from MAPPING_UV on
+constexpr const char* kMappings[] = {"uv", "spherical", "cylindrical",
+                                     "planar"};  // in order of kernel::MAPPING_*, from MAPPING_UV on
 
 // Texture-from-world; the identity, and an error, where the transform in force cannot be inverted.
 glm::dmat4 texture_from_world(const TextureContext& context) {
@@ -26,8 +27,10 @@ glm::dmat4 texture_from_world(const TextureContext& context) {
 glm::vec4 row(const glm::dmat4& m, int i) { return {float(m[0][i]), float(m[1][i]), float(m[2][i]), float(m[3][i])}; }
 
 // s = delta + dot(axis, texture-space position), as a row over the world's position.
-glm::vec4 planar_row(const TextureContext& context, const glm::dmat4& m, const char* name, glm::dvec3 axis, float delta) {
-    if (const std::vector<float> given = context.reader.get_tuple(name, 3); given.size() == 3) axis = {given[0], given[1], given[2]};
+glm::vec4 planar_row(const TextureContext& context, const glm::dmat4& m, const char* name, glm::dvec3 axis,
+                     float delta) {
+    if (const std::vector<float> given = context.reader.get_tuple(name, 3); given.size() == 3)
+        axis = {given[0], given[1], given[2]};
     const glm::dvec4 result = glm::transpose(m) * glm::dvec4(axis, 0.0);
     return {float(result.x), float(result.y), float(result.z), float(result.w + double(delta))};
 }
@@ -53,8 +56,10 @@ TextureProgram TextureContext::float_operand(std::string_view name, float absent
 
 TextureProgram TextureContext::combine(const std::vector<TextureProgram>& operands, const kernel::TextureOp& op) {
     // What is known already is not computed at every hit.
-    const bool all_constant = std::all_of(operands.begin(), operands.end(), [](const TextureProgram& p) { return p.is_constant(); });
-    if (op.data.x == kernel::TEXTURE_SCALE && all_constant) return constant_program(operands[0].constant() * operands[1].constant());
+    const bool all_constant =
+        std::all_of(operands.begin(), operands.end(), [](const TextureProgram& p) { return p.is_constant(); });
+    if (op.data.x == kernel::TEXTURE_SCALE && all_constant)
+        return constant_program(operands[0].constant() * operands[1].constant());
     if (op.data.x == kernel::TEXTURE_MIX && all_constant) {
         const float amount = operands[2].constant().x;
         return constant_program((1.0f - amount) * operands[0].constant() + amount * operands[1].constant());
@@ -63,7 +68,8 @@ TextureProgram TextureContext::combine(const std::vector<TextureProgram>& operan
         for (int i = 0; i < 2; ++i) {
             const TextureProgram& image = operands[size_t(i)];
             const TextureProgram& scale = operands[size_t(1 - i)];
-            if (!scale.is_constant() || image.ops.size() != 1 || image.ops[0].data.x != kernel::TEXTURE_IMAGE || (image.ops[0].data.w & 1u))
+            if (!scale.is_constant() || image.ops.size() != 1 || image.ops[0].data.x != kernel::TEXTURE_IMAGE ||
+                (image.ops[0].data.w & 1u))
                 continue;
             TextureProgram scaled = image;
             scaled.ops[0].a = glm::vec4(glm::vec3(scaled.ops[0].a) * scale.constant(), 0.0f);
@@ -80,13 +86,15 @@ TextureProgram TextureContext::combine(const std::vector<TextureProgram>& operan
     if (length > kernel::TEXTURE_LENGTH || result.depth > kernel::TEXTURE_STACK) {
         reader.diagnostics().error(
             texture.location,
-            fmt::format("texture \"{}\" with the textures that it is made of has {} operations and nests {} deep", shown(texture.name), length,
-                        result.depth),
-            fmt::format("at most {} operations, {} deep, are evaluated", kernel::TEXTURE_LENGTH, kernel::TEXTURE_STACK));
+            fmt::format("texture \"{}\" with the textures that it is made of has {} operations and nests {} deep",
+                        shown(texture.name), length, result.depth),
+            fmt::format("at most {} operations, {} deep, are evaluated", kernel::TEXTURE_LENGTH,
+                        kernel::TEXTURE_STACK));
         return constant_program(glm::vec3(0.5f));
     }
     result.ops.reserve(length);
-    for (const TextureProgram& operand : operands) result.ops.insert(result.ops.end(), operand.ops.begin(), operand.ops.end());
+    for (const TextureProgram& operand : operands)
+        result.ops.insert(result.ops.end(), operand.ops.begin(), operand.ops.end());
     result.ops.push_back(op);
     return result;
 }
@@ -137,7 +145,8 @@ ParameterSpecs with_mapping(ParameterSpecs specs) {
 }
 
 Registry<TextureFactory>& texture_registry() {
-    static Registry<TextureFactory> registry("texture", "Values that vary over a surface: `Texture \"NAME\" \"float|spectrum\" \"name\"`.");
+    static Registry<TextureFactory> registry(
+        "texture", "Values that vary over a surface: `Texture \"NAME\" \"float|spectrum\" \"name\"`.");
     return registry;
 }
 

@@ -15,8 +15,13 @@ constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 }  // namespace
 
 Tokenizer::Tokenizer(std::string_view text, uint32_t file, Diagnostics& diagnostics, const FileText* mapping)
-    : begin_(text.data()), cursor_(text.data()), end_(text.data() + text.size()), file_(file), diagnostics_(&diagnostics),
-      mapping_(mapping), released_(text.data()) {
+    : begin_(text.data()),
+      cursor_(text.data()),
+      end_(text.data() + text.size()),
+      file_(file),
+      diagnostics_(&diagnostics),
+      mapping_(mapping),
+      released_(text.data()) {
     if (text.starts_with(kByteOrderMark)) cursor_ += kByteOrderMark.size();
     if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) {
         diagnostics.error(location(begin_), "this text is in UTF-16", "save it as UTF-8 or ASCII");

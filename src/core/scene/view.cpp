@@ -26,7 +26,8 @@ namespace {
 
 // Finds the plugin of a directive that may be absent (then `fallback` holds, as in pbrt-v4) and hands it a reader.
 template <typename Factory, typename Call>
-void build_entity(BuildContext& context, const Registry<Factory>& registry, Entity& entity, const char* fallback, Call&& call) {
+void build_entity(BuildContext& context, const Registry<Factory>& registry, Entity& entity, const char* fallback,
+                  Call&& call) {
     if (!entity.given()) entity.type = fallback;
     const Factory* factory = registry.find(entity.type);
     if (!factory) {
@@ -58,7 +59,8 @@ void read_options(BuildContext& context) {
 void read_accelerator(BuildContext& context) {
     const Entity& accelerator = context.description.accelerator;
     if (!accelerator.given()) return;
-    context.scene.notes.push_back(fmt::format("Accelerator \"{}\" is ignored: every backend has its own", accelerator.type));
+    context.scene.notes.push_back(
+        fmt::format("Accelerator \"{}\" is ignored: every backend has its own", accelerator.type));
 }
 
 }  // namespace
@@ -72,26 +74,30 @@ void build_view(BuildContext& context) {
         FilmContext film{context, reader, record};
         factory(film);
     });
-    build_entity(context, filter_registry(), description.pixel_filter, "gaussian", [&](FilterFactory factory, ParameterReader& reader) {
-        FilterContext filter{context, reader, record};
-        factory(filter);
-    });
+    build_entity(context, filter_registry(), description.pixel_filter, "gaussian",
+                 [&](FilterFactory factory, ParameterReader& reader) {
+                     FilterContext filter{context, reader, record};
+                     factory(filter);
+                 });
     CameraDescription& camera = description.camera;
     context.refuse_medium(camera.medium);
     const std::string asked_by = context.place(camera, "Camera");
     if (camera.world_from_camera.animated()) context.refuse_motion(camera.world_from_camera, camera.location);
     if (!invertible(camera.world_from_camera.matrix[0]))
-        context.diagnostics.error(camera.location, "the camera's transform cannot be inverted", "a scale by 0, or numbers out of range?");
+        context.diagnostics.error(camera.location, "the camera's transform cannot be inverted",
+                                  "a scale by 0, or numbers out of range?");
     const kernel::TransformRecord world = transform_record(camera.world_from_camera.matrix[0]);
     record.to0 = world.to0, record.to1 = world.to1, record.to2 = world.to2;
-    build_entity(context, camera_registry(), camera, "perspective", [&](CameraFactory factory, ParameterReader& reader) {
-        CameraContext view{context, camera, reader, record, glm::vec2(record.film.x, record.film.y), asked_by};
-        factory(view);
-    });
-    build_entity(context, sampler_registry(), description.sampler, "zsobol", [&](SamplerFactory factory, ParameterReader& reader) {
-        SamplerContext sampler{context, reader};
-        factory(sampler);
-    });
+    build_entity(
+        context, camera_registry(), camera, "perspective", [&](CameraFactory factory, ParameterReader& reader) {
+            CameraContext view{context, camera, reader, record, glm::vec2(record.film.x, record.film.y), asked_by};
+            factory(view);
+        });
+    build_entity(context, sampler_registry(), description.sampler, "zsobol",
+                 [&](SamplerFactory factory, ParameterReader& reader) {
+                     SamplerContext sampler{context, reader};
+                     factory(sampler);
+                 });
     read_options(context);
     read_accelerator(context);
     context.settings.integrator = std::move(description.integrator);

@@ -12,7 +12,8 @@ class Path : public Integrator {
     }
 };
 
-REGISTER_INTEGRATOR(Path, PATH_PARAMS, "path", "Path tracing with next-event estimation and multiple importance sampling.")
+REGISTER_INTEGRATOR(Path, PATH_PARAMS, "path",
+                    "Path tracing with next-event estimation and multiple importance sampling.")
 
 }  // namespace
 }  // namespace lampyris

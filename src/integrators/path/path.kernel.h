@@ -17,7 +17,8 @@ BUFFER_RW(2, FilmPixel, film)
 CONST uint PATH_VERTEX_DIMENSIONS = 8u;
 
 // Direct light at a surface point from one sampled light.
-FN vec3 path_direct_light(IN(Surface) s, IN(Frame) frame, IN(Bsdf) bsdf, vec3 wo, float u_choice, vec2 u, INOUT(uint) rays) {
+FN vec3 path_direct_light(IN(Surface) s, IN(Frame) frame, IN(Bsdf) bsdf, vec3 wo, float u_choice, vec2 u,
+                          INOUT(uint) rays) {
     LightSample light;
     if (!light_sample(s.position, u_choice, u, light)) return vec3(0.0f);
     vec3 wi = to_local(frame, light.wi);
@@ -31,14 +32,15 @@ FN vec3 path_direct_light(IN(Surface) s, IN(Frame) frame, IN(Bsdf) bsdf, vec3 wo
 }
 
 // Radiance that arrives at the camera along the ray. The first hit's features go to `pixel`.
-FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, IN(Sampler) numbers, INOUT(FilmPixel) pixel, INOUT(uint) rays) {
+FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, IN(Sampler) numbers, INOUT(FilmPixel) pixel,
+                      INOUT(uint) rays) {
     vec3 origin = ray_origin;
     vec3 direction = ray_direction;
     vec3 radiance = vec3(0.0f);
     vec3 throughput = vec3(1.0f);
-    vec3 previous = ray_origin;     // the vertex before, whence lights were sampled
-    float bsdf_density = 0.0f;      // pdf (solid angle) with which `direction` was sampled
-    float eta_scale = 1.0f;         // undoes the scaling of radiance on refraction: roulette must not see it
+    vec3 previous = ray_origin;  // the vertex before, whence lights were sampled
+    float bsdf_density = 0.0f;   // pdf (solid angle) with which `direction` was sampled
+    float eta_scale = 1.0f;      // undoes the scaling of radiance on refraction: roulette must not see it
     bool lights_were_sampled = false;
     bool first = true;
     int depth = 0;
@@ -51,7 +53,8 @@ FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, IN(Sampler) numbers, 
             if (HAS(EFFECT_ENVIRONMENT)) {
                 vec3 emitted = environment_radiance(direction);
                 if (!is_black(emitted)) {
-                    float weight = lights_were_sampled ? power_heuristic(bsdf_density, environment_pdf(direction)) : 1.0f;
+                    float weight =
+                        lights_were_sampled ? power_heuristic(bsdf_density, environment_pdf(direction)) : 1.0f;
                     radiance += throughput * emitted * weight;
                 }
             }
@@ -60,7 +63,8 @@ FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, IN(Sampler) numbers, 
         if (HAS(EFFECT_AREA_LIGHTS) && s.light != NONE) {
             vec3 emitted = light_emission(s, -direction);
             if (!is_black(emitted)) {
-                float weight = lights_were_sampled ? power_heuristic(bsdf_density, light_pdf(s, previous, direction)) : 1.0f;
+                float weight =
+                    lights_were_sampled ? power_heuristic(bsdf_density, light_pdf(s, previous, direction)) : 1.0f;
                 radiance += throughput * emitted * weight;
             }
         }

@@ -23,7 +23,8 @@ std::array<float, 4> screen_window(CameraContext& camera) {
         const auto* numbers = std::get_if<std::vector<float>>(&given->values);
         if (!numbers || numbers->size() != 4 || (*numbers)[0] == (*numbers)[1] || (*numbers)[2] == (*numbers)[3] ||
             !std::all_of(numbers->begin(), numbers->end(), [](float x) { return std::isfinite(x); })) {
-            camera.reader.error("screenwindow", "\"screenwindow\" must be four numbers", "xmin xmax ymin ymax, not equal");
+            camera.reader.error("screenwindow", "\"screenwindow\" must be four numbers",
+                                "xmin xmax ymin ymax, not equal");
         } else {
             for (size_t i = 0; i < 4; ++i) window[i] = (*numbers)[i];
         }
@@ -54,7 +55,8 @@ void build_orthographic(CameraContext& camera) { build_projection(camera, kernel
 ParameterSpecs common_specs() {
     return {
         real("frameaspectratio", 1.0, "width by height of the screen; default: that of the resolution").above(0),
-        values("screenwindow", ParameterType::kFloat, "the shorter side is -1 1", "part of the plane z = 1 that is shown: xmin xmax ymin ymax"),
+        values("screenwindow", ParameterType::kFloat, "the shorter side is -1 1",
+               "part of the plane z = 1 that is shown: xmin xmax ymin ymax"),
         real("lensradius", 0.0, "of the lens; 0: a pinhole").at_least(0).in("scene units"),
         real("focaldistance", 1e6, "distance of the plane that is sharp").above(0).in("scene units"),
         real("shutteropen", 0.0, "when the shutter opens").in("s"),
@@ -64,12 +66,15 @@ ParameterSpecs common_specs() {
 
 ParameterSpecs perspective_specs() {
     ParameterSpecs specs = common_specs();
-    specs.insert(specs.begin(), real("fov", 90.0, "field of view across the shorter side").above(0).between(0, 179.9).in("degrees"));
+    specs.insert(specs.begin(),
+                 real("fov", 90.0, "field of view across the shorter side").above(0).between(0, 179.9).in("degrees"));
     return specs;
 }
 
-const RegisterCamera perspective("perspective", "Central projection, with a thin lens if lensradius is above 0.", perspective_specs(), build_perspective);
-const RegisterCamera orthographic("orthographic", "Parallel projection, with a thin lens if lensradius is above 0.", common_specs(), build_orthographic);
+const RegisterCamera perspective("perspective", "Central projection, with a thin lens if lensradius is above 0.",
+                                 perspective_specs(), build_perspective);
+const RegisterCamera orthographic("orthographic", "Parallel projection, with a thin lens if lensradius is above 0.",
+                                  common_specs(), build_orthographic);
 
 }  // namespace
 

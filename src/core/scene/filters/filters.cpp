@@ -23,10 +23,12 @@ void set_table(FilterContext& context, F&& f) {
     const double rx = context.record.filtering.x, ry = context.record.filtering.y;
     std::vector<float>& distributions = context.build.scene.distributions;
     try {
-        context.record.data.z = append_filter_table([&](double x) { return f(x, rx); }, rx, [&](double y) { return f(y, ry); }, ry, distributions);
+        context.record.data.z = append_filter_table([&](double x) { return f(x, rx); }, rx,
+                                                    [&](double y) { return f(y, ry); }, ry, distributions);
         context.record.data.w = kFilterTableSize;
     } catch (const std::invalid_argument& error) {
-        context.build.diagnostics.error(context.reader.entity().location, "the filter's integral is not positive", "other parameters");
+        context.build.diagnostics.error(context.reader.entity().location, "the filter's integral is not positive",
+                                        "other parameters");
         context.record.data.y = kernel::PIXEL_FILTER_BOX;
     }
 }
@@ -53,11 +55,14 @@ ParameterSpecs with_radius(double radius, ParameterSpecs specs = {}) {
 const RegisterFilter box("box", "All of the pixel alike.", with_radius(0.5), build_box);
 const RegisterFilter triangle("triangle", "Falls off linearly.", with_radius(2.0), build_triangle);
 const RegisterFilter gaussian("gaussian", "A Gaussian, lowered to reach zero at the radius.",
-                              with_radius(1.5, {real("sigma", 0.5, "standard deviation").above(0).in("pixels")}), build_gaussian);
+                              with_radius(1.5, {real("sigma", 0.5, "standard deviation").above(0).in("pixels")}),
+                              build_gaussian);
 const RegisterFilter mitchell("mitchell", "Mitchell and Netravali's cubic.",
-                              with_radius(2.0, {real("B", 1.0 / 3.0, "blur"), real("C", 1.0 / 3.0, "ringing")}), build_mitchell);
+                              with_radius(2.0, {real("B", 1.0 / 3.0, "blur"), real("C", 1.0 / 3.0, "ringing")}),
+                              build_mitchell);
 const RegisterFilter lanczos("sinc", "A sinc under a Lanczos window.",
-                             with_radius(4.0, {real("tau", 3.0, "width of the window").above(0).in("pixels")}), build_sinc);
+                             with_radius(4.0, {real("tau", 3.0, "width of the window").above(0).in("pixels")}),
+                             build_sinc);
 
 }  // namespace
 

@@ -32,11 +32,13 @@ glm::vec3 read_direction(LightContext& context, glm::vec3& from) {
 }
 
 ParameterSpec emission_spec(const std::string& name, const std::string& of_what) {
-    return value(name, ParameterType::kSpectrum, "1 1 1", of_what + "; a spectrum other than rgb is scaled to luminance 1");
+    return value(name, ParameterType::kSpectrum, "1 1 1",
+                 of_what + "; a spectrum other than rgb is scaled to luminance 1");
 }
 ParameterSpec scale_spec() { return real("scale", 1.0, "multiplies it").at_least(0); }
 ParameterSpec power_spec() {
-    return real("power", 0.0, "luminous power, 0: as the other parameters say; as in pbrt-v4, rgb values multiply it").at_least(0);
+    return real("power", 0.0, "luminous power, 0: as the other parameters say; as in pbrt-v4, rgb values multiply it")
+        .at_least(0);
 }
 
 }  // namespace lampyris

@@ -16,18 +16,21 @@ void build(LightContext& context) {
     const glm::mat3 m(context.light.world_from_light.matrix[0]);
     record.v0 = {-glm::normalize(m * direction), 0.0f};
     glm::vec3 irradiance = read_emission(context, "L");
-    if (const float illuminance = context.reader.get_float("illuminance"); illuminance > 0.0f) irradiance *= illuminance;
+    if (const float illuminance = context.reader.get_float("illuminance"); illuminance > 0.0f)
+        irradiance *= illuminance;
     record.emission = {irradiance, 0.0f};
     context.ask(kernel::EFFECT_DISTANT_LIGHTS);
-    context.build.lights.push_back({record, luminance_of(irradiance) * std::numbers::pi_v<float>, true, context.light.location});
+    context.build.lights.push_back(
+        {record, luminance_of(irradiance) * std::numbers::pi_v<float>, true, context.light.location});
 }
 
-const RegisterLight distant("distant", "Parallel light from one direction.",
-                            {emission_spec("L", "irradiance across the light's direction"), scale_spec(),
-                             real("illuminance", 0.0, "across the light's direction, 0: as the other parameters say").at_least(0),
-                             value("from", ParameterType::kPoint3, "0 0 0", "the light comes from this side"),
-                             value("to", ParameterType::kPoint3, "0 0 1", "and goes to this one")},
-                            build);
+const RegisterLight distant(
+    "distant", "Parallel light from one direction.",
+    {emission_spec("L", "irradiance across the light's direction"), scale_spec(),
+     real("illuminance", 0.0, "across the light's direction, 0: as the other parameters say").at_least(0),
+     value("from", ParameterType::kPoint3, "0 0 0", "the light comes from this side"),
+     value("to", ParameterType::kPoint3, "0 0 1", "and goes to this one")},
+    build);
 
 }  // namespace
 

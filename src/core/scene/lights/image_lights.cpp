@@ -70,16 +70,19 @@ void build_goniometric(LightContext& context) {
     }
     const kernel::ImageRecord& image = context.build.scene.images[record.data.z];
     if (image.data.y != image.data.z) {
-        context.reader.error("filename", fmt::format("the image is {}x{}", image.data.y, image.data.z), "goniometric lights take square images in the equal-area octahedral mapping");
+        context.reader.error("filename", fmt::format("the image is {}x{}", image.data.y, image.data.z),
+                             "goniometric lights take square images in the equal-area octahedral mapping");
         return;
     }
-    add_light(context, record, intensity, 4.0 * kPi * double(luminance_of(context.build.textures.average(record.data.z))));
+    add_light(context, record, intensity,
+              4.0 * kPi * double(luminance_of(context.build.textures.average(record.data.z))));
 }
 
-const RegisterLight projection("projection", "Throws a picture from a point, like a slide projector.",
-                               {text("filename", "", "the picture").needed(), scale_spec(), power_spec(),
-                                real("fov", 90.0, "field of view across the shorter side").above(0).between(0, 179.9).in("degrees")},
-                               build_projection);
+const RegisterLight projection(
+    "projection", "Throws a picture from a point, like a slide projector.",
+    {text("filename", "", "the picture").needed(), scale_spec(), power_spec(),
+     real("fov", 90.0, "field of view across the shorter side").above(0).between(0, 179.9).in("degrees")},
+    build_projection);
 const RegisterLight goniometric("goniometric", "A point light whose intensity an image gives for each direction.",
                                 {emission_spec("I", "intensity, times the image's"), scale_spec(), power_spec(),
                                  text("filename", "", "an equal-area octahedral image; the pole is +y of light space")},

@@ -25,11 +25,14 @@ float octahedral_z(float s, float t) {
 
 void build_constant(LightContext& context, float scale) {
     kernel::LightRecord record = blank_light(kernel::LIGHT_INFINITE);
-    glm::vec3 radiance = scale * read_spectrum(context.build, context.reader, "L", SpectrumUse::kLight, glm::vec3(1.0f));
-    if (const float illuminance = context.reader.get_float("illuminance"); illuminance > 0.0f) radiance *= illuminance / kPi;
+    glm::vec3 radiance =
+        scale * read_spectrum(context.build, context.reader, "L", SpectrumUse::kLight, glm::vec3(1.0f));
+    if (const float illuminance = context.reader.get_float("illuminance"); illuminance > 0.0f)
+        radiance *= illuminance / kPi;
     record.emission = {radiance, 0.0f};
     context.ask(kernel::EFFECT_ENVIRONMENT);
-    context.build.infinite_lights.push_back({record, luminance_of(radiance) * 4.0f * kPi * kPi, true, context.light.location});
+    context.build.infinite_lights.push_back(
+        {record, luminance_of(radiance) * 4.0f * kPi * kPi, true, context.light.location});
 }
 
 void build_image(LightContext& context, const std::string& filename, float scale) {
@@ -42,7 +45,8 @@ void build_image(LightContext& context, const std::string& filename, float scale
     const uint32_t width = image.data.y, height = image.data.z;
     if (width != height) {
         context.reader.error("filename", fmt::format("the image is {}x{}", width, height),
-                             "infinite lights take square images in the equal-area octahedral mapping, as pbrt-v4 does (imgtool makeequiarea converts)");
+                             "infinite lights take square images in the equal-area octahedral mapping, as pbrt-v4 does "
+                             "(imgtool makeequiarea converts)");
         return;
     }
     std::vector<float> weights;
@@ -69,7 +73,8 @@ void build_image(LightContext& context, const std::string& filename, float scale
     context.ask(kernel::EFFECT_ENVIRONMENT);
     context.ask(kernel::EFFECT_ENVIRONMENT_IMAGE);
     context.ask(kernel::EFFECT_IMAGES);
-    build.infinite_lights.push_back({record, float(average * scale * 4.0 * std::numbers::pi * std::numbers::pi), true, context.light.location});
+    build.infinite_lights.push_back(
+        {record, float(average * scale * 4.0 * std::numbers::pi * std::numbers::pi), true, context.light.location});
 }
 
 void build(LightContext& context) {
@@ -77,7 +82,8 @@ void build(LightContext& context) {
     const float scale = reader.get_float("scale");
     const std::string filename = reader.get_string("filename");
     if (reader.find("portal"))
-        context.build.diagnostics.unsupported(reader.location("portal"), "portals of infinite lights", "without it, all of the sky is sampled");
+        context.build.diagnostics.unsupported(reader.location("portal"), "portals of infinite lights",
+                                              "without it, all of the sky is sampled");
     if (filename.empty()) {
         build_constant(context, scale);
         return;
@@ -86,12 +92,13 @@ void build(LightContext& context) {
     build_image(context, filename, scale);
 }
 
-const RegisterLight infinite("infinite", "Light from all around: constant, or an equal-area octahedral image.",
-                             {emission_spec("L", "radiance"), scale_spec(),
-                              real("illuminance", 0.0, "on a surface that faces +z of light space, 0: as the other parameters say").at_least(0),
-                              text("filename", "", "an image of the sky instead of L; the pole is +z of light space"),
-                              values("portal", ParameterType::kPoint3, "none", "the window through which light comes (not supported)")},
-                             build);
+const RegisterLight infinite(
+    "infinite", "Light from all around: constant, or an equal-area octahedral image.",
+    {emission_spec("L", "radiance"), scale_spec(),
+     real("illuminance", 0.0, "on a surface that faces +z of light space, 0: as the other parameters say").at_least(0),
+     text("filename", "", "an image of the sky instead of L; the pole is +z of light space"),
+     values("portal", ParameterType::kPoint3, "none", "the window through which light comes (not supported)")},
+    build);
 
 }  // namespace
 

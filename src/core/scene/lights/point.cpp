@@ -31,7 +31,9 @@ void build_point(LightContext& context) {
 void build_spot(LightContext& context) {
     kernel::LightRecord record = blank_light(kernel::LIGHT_SPOT);
     const float cone = context.reader.get_float("coneangle"), delta = context.reader.get_float("conedeltaangle");
-    if (delta > cone) context.reader.error("conedeltaangle", "\"conedeltaangle\" is larger than \"coneangle\"", "the falloff is a part of the cone");
+    if (delta > cone)
+        context.reader.error("conedeltaangle", "\"conedeltaangle\" is larger than \"coneangle\"",
+                             "the falloff is a part of the cone");
     const float begin = std::cos(std::fmax(cone - delta, 0.0f) * kPi / 180.0f), end = std::cos(cone * kPi / 180.0f);
     glm::vec3 from;
     const glm::vec3 direction = read_direction(context, from);
@@ -45,17 +47,21 @@ void build_spot(LightContext& context) {
 }
 
 ParameterSpecs point_specs() {
-    return {emission_spec("I", "intensity"), scale_spec(), power_spec(), value("from", ParameterType::kPoint3, "0 0 0", "position").in("scene units")};
+    return {emission_spec("I", "intensity"), scale_spec(), power_spec(),
+            value("from", ParameterType::kPoint3, "0 0 0", "position").in("scene units")};
 }
 ParameterSpecs spot_specs() {
     ParameterSpecs specs = point_specs();
     specs.push_back(value("to", ParameterType::kPoint3, "0 0 1", "a point on the axis").in("scene units"));
-    specs.push_back(real("coneangle", 30.0, "from the axis to where no light falls").above(0).between(0, 180).in("degrees"));
-    specs.push_back(real("conedeltaangle", 5.0, "over which the light falls off, inside of that").between(0, 180).in("degrees"));
+    specs.push_back(
+        real("coneangle", 30.0, "from the axis to where no light falls").above(0).between(0, 180).in("degrees"));
+    specs.push_back(
+        real("conedeltaangle", 5.0, "over which the light falls off, inside of that").between(0, 180).in("degrees"));
     return specs;
 }
 
-const RegisterLight point("point", "Sends the same intensity in all directions from a point.", point_specs(), build_point);
+const RegisterLight point("point", "Sends the same intensity in all directions from a point.", point_specs(),
+                          build_point);
 const RegisterLight spot("spot", "A cone of light from a point.", spot_specs(), build_spot);
 
 }  // namespace

@@ -8,7 +8,9 @@
 namespace lampyris {
 
 ParameterSpecs with_surface_detail(ParameterSpecs specs) {
-    specs.push_back(value("displacement", ParameterType::kTexture, "none", "height of a bump map, which tilts the shading normal").in("scene units"));
+    specs.push_back(
+        value("displacement", ParameterType::kTexture, "none", "height of a bump map, which tilts the shading normal")
+            .in("scene units"));
     specs.push_back(text("normalmap", "", "an image of shading normals in tangent space"));
     return specs;
 }
@@ -19,7 +21,8 @@ void read_surface_detail(MaterialContext& context) {
     if (const Parameter* bump = context.reader.find("displacement")) {
         const auto* names = std::get_if<std::vector<std::string>>(&bump->values);
         if (bump->type != ParameterType::kTexture || !names || names->size() != 1) {
-            context.reader.error("displacement", "\"displacement\" must name one float texture", "\"texture displacement\" \"name\"");
+            context.reader.error("displacement", "\"displacement\" must name one float texture",
+                                 "\"texture displacement\" \"name\"");
         } else {
             context.record.data.z = context.build.textures.float_program(names->front(), bump->value_location);
             context.ask(kernel::EFFECT_TEXTURES);
@@ -28,14 +31,16 @@ void read_surface_detail(MaterialContext& context) {
     }
     const std::string map = context.reader.get_string("normalmap");
     if (!map.empty()) {
-        context.record.data.w = context.build.textures.image(map, TextureBuilder::Content::kNormalMap, context.reader.location("normalmap"));
+        context.record.data.w = context.build.textures.image(map, TextureBuilder::Content::kNormalMap,
+                                                             context.reader.location("normalmap"));
         context.ask(kernel::EFFECT_BUMP);
         context.ask(kernel::EFFECT_IMAGES);
     }
 }
 
 void add_roughness(ParameterSpecs& specs, const std::string& prefix, double default_value, const std::string& of_what) {
-    specs.push_back(real(prefix + "roughness", default_value, "of " + of_what + "; 0 is a mirror").at_least(0).textured());
+    specs.push_back(
+        real(prefix + "roughness", default_value, "of " + of_what + "; 0 is a mirror").at_least(0).textured());
     specs.push_back(real(prefix + "uroughness", default_value, "along u; default: roughness").at_least(0).textured());
     specs.push_back(real(prefix + "vroughness", default_value, "along v; default: roughness").at_least(0).textured());
 }
@@ -46,16 +51,19 @@ Roughness read_roughness(MaterialContext& context, const std::string& prefix) {
         return context.reader.has(name) ? read_float(context.build, context.reader, name) : both;
     };
     const Roughness roughness{along(prefix + "uroughness"), along(prefix + "vroughness")};
-    if (roughness.u.value != roughness.v.value || roughness.u.texture != roughness.v.texture) context.ask(kernel::EFFECT_ANISOTROPIC);
+    if (roughness.u.value != roughness.v.value || roughness.u.texture != roughness.v.texture)
+        context.ask(kernel::EFFECT_ANISOTROPIC);
     return roughness;
 }
 
 ParameterSpec remap_spec() {
-    return boolean("remaproughness", true, "whether the microfacets' alpha is the root of the roughness, or the roughness itself");
+    return boolean("remaproughness", true,
+                   "whether the microfacets' alpha is the root of the roughness, or the roughness itself");
 }
 
 ParameterSpec eta_spec(const std::string& name, const std::string& of_what) {
-    ParameterSpec spec = real(name, 1.5, "index of refraction of " + of_what + "; a spectrum asks for dispersion").above(0);
+    ParameterSpec spec =
+        real(name, 1.5, "index of refraction of " + of_what + "; a spectrum asks for dispersion").above(0);
     spec.spectral = true;
     return spec;
 }
@@ -67,7 +75,8 @@ float read_eta(MaterialContext& context, std::string_view name) {
     const float fallback = float(find_spec(context.reader.specs(), name)->number);
     float eta = fallback;
     if (parameter->type == ParameterType::kRgb || parameter->type == ParameterType::kTexture) {
-        context.reader.error(name, fmt::format("\"{}\" is of type {}", name, type_name(parameter->type)), "float, or spectrum");
+        context.reader.error(name, fmt::format("\"{}\" is of type {}", name, type_name(parameter->type)),
+                             "float, or spectrum");
         return fallback;
     }
     const auto spectrum = sampled_spectrum(*parameter, context.build.description.directory, context.build.diagnostics);
@@ -75,8 +84,9 @@ float read_eta(MaterialContext& context, std::string_view name) {
     const auto [low, high] = std::minmax_element(spectrum->values.begin(), spectrum->values.end());
     eta = *low == *high ? *low : spectrum->at(kSodiumLine);
     if (*low != *high)
-        context.build.diagnostics.unsupported(context.reader.location(name), "dispersion (an index of refraction that depends on the wavelength)",
-                                              fmt::format("a constant, \"float {}\" {:.4f}, takes its place if skipped", name, eta));
+        context.build.diagnostics.unsupported(
+            context.reader.location(name), "dispersion (an index of refraction that depends on the wavelength)",
+            fmt::format("a constant, \"float {}\" {:.4f}, takes its place if skipped", name, eta));
     if (eta > 0.0f) return eta;
     context.reader.error(name, fmt::format("\"{}\" is {:g} at {} nm", name, eta, kSodiumLine), "it must be above 0");
     return fallback;
@@ -96,10 +106,15 @@ void set_color2(MaterialContext& context, const ColorSlot& slot) {
 }
 
 void add_conductor(ParameterSpecs& specs, const std::string& prefix) {
-    specs.push_back(value(prefix + "eta", ParameterType::kSpectrum, "metal-Cu-eta", "real part of the index of refraction").textured());
+    specs.push_back(
+        value(prefix + "eta", ParameterType::kSpectrum, "metal-Cu-eta", "real part of the index of refraction")
+            .textured());
     specs.push_back(value(prefix + "k", ParameterType::kSpectrum, "metal-Cu-k", "its imaginary part").textured());
-    specs.push_back(value("reflectance", ParameterType::kSpectrum, "as eta and k say", "reflectance at normal incidence, instead of eta and k").textured());
-    specs.push_back(boolean("energycompensation", false, "gives back what single scattering between microfacets loses (pbrt-v4 does not)"));
+    specs.push_back(value("reflectance", ParameterType::kSpectrum, "as eta and k say",
+                          "reflectance at normal incidence, instead of eta and k")
+                        .textured());
+    specs.push_back(boolean("energycompensation", false,
+                            "gives back what single scattering between microfacets loses (pbrt-v4 does not)"));
 }
 
 void read_conductor(MaterialContext& context, const std::string& prefix) {
@@ -109,7 +124,9 @@ void read_conductor(MaterialContext& context, const std::string& prefix) {
     if (reader.get_bool("energycompensation")) context.record.data.y |= kernel::MATERIAL_ENERGY_COMPENSATION;
     if (reader.has("reflectance")) {
         if (reader.has(eta) || reader.has(k))
-            reader.error("reflectance", fmt::format("both \"reflectance\" and \"{}\" are given", reader.has(eta) ? eta : k), "one of them");
+            reader.error("reflectance",
+                         fmt::format("both \"reflectance\" and \"{}\" are given", reader.has(eta) ? eta : k),
+                         "one of them");
         reader.find(eta), reader.find(k);
         context.record.data.y |= kernel::MATERIAL_USES_REFLECTANCE;
         set_color0(context, read_color(context.build, reader, "reflectance", SpectrumUse::kAlbedo, glm::vec3(0.5f)));
@@ -120,10 +137,12 @@ void read_conductor(MaterialContext& context, const std::string& prefix) {
         const Parameter* parameter = reader.find(name);
         if (!parameter) return *named_spectrum(absent);
         if (parameter->type != ParameterType::kSpectrum) return {};
-        const auto spectrum = sampled_spectrum(*parameter, context.build.description.directory, context.build.diagnostics);
+        const auto spectrum =
+            sampled_spectrum(*parameter, context.build.description.directory, context.build.diagnostics);
         return spectrum ? *spectrum : *named_spectrum(absent);  // what is wrong with it is told
     };
-    const std::optional<SampledSpectrum> eta_spectrum = sampled(eta, "metal-Cu-eta"), k_spectrum = sampled(k, "metal-Cu-k");
+    const std::optional<SampledSpectrum> eta_spectrum = sampled(eta, "metal-Cu-eta"),
+                                         k_spectrum = sampled(k, "metal-Cu-k");
     if (eta_spectrum && k_spectrum) {
         const ConductorRgb rgb = conductor_rgb(*eta_spectrum, *k_spectrum);
         set_color0(context, {rgb.eta, kNone, true});

@@ -32,8 +32,10 @@ ParameterSpecs specs() {
     return with_surface_detail(std::move(specs));
 }
 
-const RegisterMaterial dielectric("dielectric", "Glass or water: reflects and refracts, smooth or rough (GGX).", specs(), build);
-const RegisterMaterial thindielectric("thindielectric", "A pane of glass as one surface: reflects, or lets pass straight on.",
+const RegisterMaterial dielectric("dielectric", "Glass or water: reflects and refracts, smooth or rough (GGX).",
+                                  specs(), build);
+const RegisterMaterial thindielectric("thindielectric",
+                                      "A pane of glass as one surface: reflects, or lets pass straight on.",
                                       with_surface_detail({eta_spec("eta", "the pane")}), build_thin);
 
 }  // namespace

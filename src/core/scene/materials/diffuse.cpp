@@ -7,12 +7,15 @@ namespace {
 
 void build(MaterialContext& context) {
     context.record.data.x = kernel::MATERIAL_DIFFUSE;
-    set_color0(context, read_color(context.build, context.reader, "reflectance", SpectrumUse::kAlbedo, glm::vec3(0.5f)));
+    set_color0(context,
+               read_color(context.build, context.reader, "reflectance", SpectrumUse::kAlbedo, glm::vec3(0.5f)));
     read_surface_detail(context);
 }
 
 ParameterSpecs specs() {
-    return with_surface_detail({value("reflectance", ParameterType::kSpectrum, "0.5", "share of the light that is scattered back").textured()});
+    return with_surface_detail(
+        {value("reflectance", ParameterType::kSpectrum, "0.5", "share of the light that is scattered back")
+             .textured()});
 }
 
 const RegisterMaterial diffuse("diffuse", "Scatters light evenly, by Lambert's law.", specs(), build);

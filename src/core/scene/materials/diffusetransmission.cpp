@@ -8,8 +8,10 @@ namespace {
 void build(MaterialContext& context) {
     context.record.data.x = kernel::MATERIAL_DIFFUSE_TRANSMISSION;
     context.ask(kernel::EFFECT_DIFFUSE_TRANSMISSION);
-    set_color0(context, read_color(context.build, context.reader, "reflectance", SpectrumUse::kAlbedo, glm::vec3(0.25f)));
-    set_color1(context, read_color(context.build, context.reader, "transmittance", SpectrumUse::kAlbedo, glm::vec3(0.25f)));
+    set_color0(context,
+               read_color(context.build, context.reader, "reflectance", SpectrumUse::kAlbedo, glm::vec3(0.25f)));
+    set_color1(context,
+               read_color(context.build, context.reader, "transmittance", SpectrumUse::kAlbedo, glm::vec3(0.25f)));
     context.record.color0.w = context.reader.get_float("scale");
     read_surface_detail(context);
 }
@@ -17,12 +19,14 @@ void build(MaterialContext& context) {
 ParameterSpecs specs() {
     return with_surface_detail({
         value("reflectance", ParameterType::kSpectrum, "0.25", "share of the light that is scattered back").textured(),
-        value("transmittance", ParameterType::kSpectrum, "0.25", "share of the light that is scattered through").textured(),
+        value("transmittance", ParameterType::kSpectrum, "0.25", "share of the light that is scattered through")
+            .textured(),
         real("scale", 1.0, "multiplies both").at_least(0),
     });
 }
 
-const RegisterMaterial diffusetransmission("diffusetransmission", "Scatters light evenly to both sides.", specs(), build);
+const RegisterMaterial diffusetransmission("diffusetransmission", "Scatters light evenly to both sides.", specs(),
+                                           build);
 
 }  // namespace
 

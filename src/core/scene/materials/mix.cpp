@@ -19,7 +19,8 @@ uint32_t mix_depth(const BuildContext& build, uint32_t material) {
 }
 
 void refuse_depth(MaterialContext& context) {
-    context.reader.error("materials", "mixes of mixes nest too deeply", fmt::format("at most {} within each other", kMostMixes));
+    context.reader.error("materials", "mixes of mixes nest too deeply",
+                         fmt::format("at most {} within each other", kMostMixes));
 }
 
 void build(MaterialContext& context) {
@@ -36,18 +37,21 @@ void build(MaterialContext& context) {
     if (!parameter) return;  // told as a missing parameter
     const auto* names = std::get_if<std::vector<std::string>>(&parameter->values);
     if (!names || names->size() != 2) {
-        context.reader.error("materials", fmt::format("\"mix\" of {} materials", names ? names->size() : 0), "\"string materials\" [ \"a\" \"b\" ]");
+        context.reader.error("materials", fmt::format("\"mix\" of {} materials", names ? names->size() : 0),
+                             "\"string materials\" [ \"a\" \"b\" ]");
         return;
     }
     for (int i = 0; i < 2; ++i) {
         const std::string& name = (*names)[size_t(i)];
         const auto& all = build.description.materials;
-        const auto found = std::find_if(all.begin(), all.end(), [&](const MaterialDescription& m) { return !m.name.empty() && m.name == name; });
+        const auto found = std::find_if(
+            all.begin(), all.end(), [&](const MaterialDescription& m) { return !m.name.empty() && m.name == name; });
         if (found == all.end()) {
             std::vector<std::string> known;
             for (const MaterialDescription& m : all)
                 if (!m.name.empty()) known.push_back(m.name);
-            context.reader.error("materials", fmt::format("there is no material named \"{}\"{}", name, did_you_mean(name, known)),
+            context.reader.error("materials",
+                                 fmt::format("there is no material named \"{}\"{}", name, did_you_mean(name, known)),
                                  "MakeNamedMaterial defines one");
             continue;
         }

@@ -14,10 +14,14 @@ void set_sampler(SamplerContext& context, const char* kind, int samples) {
     settings.samples_per_pixel = samples;
     settings.seed = uint32_t(context.reader.get_int("seed"));
     if (name != kind && context.reader.entity().given())
-        context.build.scene.notes.push_back(fmt::format("Sampler \"{}\" is mapped to {}", name, std::string_view(kind) == "sobol" ? "Owen-scrambled Sobol points" : "independent random numbers"));
+        context.build.scene.notes.push_back(fmt::format(
+            "Sampler \"{}\" is mapped to {}", name,
+            std::string_view(kind) == "sobol" ? "Owen-scrambled Sobol points" : "independent random numbers"));
 }
 
-void build_independent(SamplerContext& context) { set_sampler(context, "independent", context.reader.get_int("pixelsamples")); }
+void build_independent(SamplerContext& context) {
+    set_sampler(context, "independent", context.reader.get_int("pixelsamples"));
+}
 
 void build_sobol(SamplerContext& context) {
     if (find_spec(context.reader.specs(), "randomization")) context.reader.get_string("randomization");
@@ -27,7 +31,8 @@ void build_sobol(SamplerContext& context) {
 void build_stratified(SamplerContext& context) {
     context.reader.get_bool("jitter");
     const int64_t samples = int64_t(context.reader.get_int("xsamples")) * context.reader.get_int("ysamples");
-    if (samples > (1 << 30)) context.reader.error("xsamples", fmt::format("{} samples a pixel", samples), "at most 2^30");
+    if (samples > (1 << 30))
+        context.reader.error("xsamples", fmt::format("{} samples a pixel", samples), "at most 2^30");
     set_sampler(context, "sobol", samples > (1 << 30) ? 1 : int(samples));
 }
 
@@ -36,10 +41,12 @@ ParameterSpec seed_spec() { return integer("seed", 0, "another seed gives other 
 ParameterSpecs plain_specs() { return {samples_spec(), seed_spec()}; }
 ParameterSpecs random_specs() {
     return {samples_spec(), seed_spec(),
-            text("randomization", "fastowen", "pbrt's way to randomize; here points are always Owen-scrambled").one_of({"none", "permutedigits", "fastowen", "owen"})};
+            text("randomization", "fastowen", "pbrt's way to randomize; here points are always Owen-scrambled")
+                .one_of({"none", "permutedigits", "fastowen", "owen"})};
 }
 ParameterSpecs stratified_specs() {
-    return {integer("xsamples", 4, "strata across a pixel").between(1, 1 << 20), integer("ysamples", 4, "strata down a pixel").between(1, 1 << 20),
+    return {integer("xsamples", 4, "strata across a pixel").between(1, 1 << 20),
+            integer("ysamples", 4, "strata down a pixel").between(1, 1 << 20),
             boolean("jitter", true, "has no effect here"), seed_spec()};
 }
 
@@ -49,7 +56,8 @@ const RegisterSampler zsobol("zsobol", "Mapped to sobol.", random_specs(), build
 const RegisterSampler paddedsobol("paddedsobol", "Mapped to sobol.", random_specs(), build_sobol);
 const RegisterSampler halton("halton", "Mapped to sobol.", random_specs(), build_sobol);
 const RegisterSampler pmj02bn("pmj02bn", "Mapped to sobol.", plain_specs(), build_sobol);
-const RegisterSampler stratified("stratified", "Mapped to sobol, xsamples times ysamples of them.", stratified_specs(), build_stratified);
+const RegisterSampler stratified("stratified", "Mapped to sobol, xsamples times ysamples of them.", stratified_specs(),
+                                 build_stratified);
 
 }  // namespace
 

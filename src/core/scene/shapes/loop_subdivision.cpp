@@ -37,7 +37,8 @@ Topology connect(size_t vertices, const std::vector<Face>& faces) {
             }
             const auto [other, is_new] = sides.emplace(edge_key(from, to), 3 * f + k);
             if (!is_new) {
-                topology.error = fmt::format("faces {} and {} both run from vertex {} to {}", other->second / 3, f, from, to);
+                topology.error =
+                    fmt::format("faces {} and {} both run from vertex {} to {}", other->second / 3, f, from, to);
                 return topology;
             }
         }
@@ -62,7 +63,9 @@ void walk_ring(const std::vector<Face>& faces, const Topology& topology, uint32_
     ring.boundary = false;
     const uint32_t start = topology.first_face[vertex];
     const auto clockwise = [&](uint32_t f) { return topology.neighbour[3 * f + corner_of(faces[f], vertex)]; };
-    const auto counter_clockwise = [&](uint32_t f) { return topology.neighbour[3 * f + (corner_of(faces[f], vertex) + 2) % 3]; };
+    const auto counter_clockwise = [&](uint32_t f) {
+        return topology.neighbour[3 * f + (corner_of(faces[f], vertex) + 2) % 3];
+    };
     uint32_t face = start;
     do {
         ring.vertices.push_back(faces[face][(corner_of(faces[face], vertex) + 1) % 3]);
@@ -85,10 +88,12 @@ void walk_ring(const std::vector<Face>& faces, const Topology& topology, uint32_
 // design"; used by pbrt, 3rd edition, section 3.8).
 float beta(size_t valence) { return valence == 3 ? 3.0f / 16.0f : 3.0f / (8.0f * float(valence)); }
 
-glm::vec3 smoothed(const std::vector<glm::vec3>& p, uint32_t vertex, const Ring& ring, float interior_weight, float boundary_weight) {
+glm::vec3 smoothed(const std::vector<glm::vec3>& p, uint32_t vertex, const Ring& ring, float interior_weight,
+                   float boundary_weight) {
     const size_t n = ring.vertices.size();
     if (ring.boundary)
-        return (1.0f - 2.0f * boundary_weight) * p[vertex] + boundary_weight * (p[ring.vertices.front()] + p[ring.vertices.back()]);
+        return (1.0f - 2.0f * boundary_weight) * p[vertex] +
+               boundary_weight * (p[ring.vertices.front()] + p[ring.vertices.back()]);
     glm::vec3 sum(0.0f);
     for (const uint32_t other : ring.vertices) sum += p[other];
     return (1.0f - float(n) * interior_weight) * p[vertex] + interior_weight * sum;
@@ -115,7 +120,9 @@ void subdivide_once(std::vector<glm::vec3>& positions, std::vector<Face>& faces,
             if (across != kNoFace) {
                 const uint32_t other = (corner_of(faces[across], a) + 2) % 3;  // the edge is b -> a over there
                 p = 3.0f / 8.0f * (positions[a] + positions[b]) +
-                    1.0f / 8.0f * (positions[faces[f][(k + 2) % 3]] + positions[faces[across][(corner_of(faces[across], a) + 1) % 3]]);
+                    1.0f / 8.0f *
+                        (positions[faces[f][(k + 2) % 3]] +
+                         positions[faces[across][(corner_of(faces[across], a) + 1) % 3]]);
                 middle[3 * across + other] = uint32_t(next.size());
             }
             middle[3 * f + k] = uint32_t(next.size());

@@ -20,17 +20,22 @@ void build(ShapeContext& context) {
     mesh.indices.assign(indices.begin(), indices.end());
     if (!check_mesh(context, mesh)) return;
     if ((mesh.indices.size() / 3) << (2 * levels) > kMostFaces) {
-        reader.error("levels", fmt::format("{} levels make {} triangles of {}", levels, (mesh.indices.size() / 3) << (2 * levels), mesh.indices.size() / 3),
+        reader.error("levels",
+                     fmt::format("{} levels make {} triangles of {}", levels, (mesh.indices.size() / 3) << (2 * levels),
+                                 mesh.indices.size() / 3),
                      fmt::format("at most {}", kMostFaces));
         return;
     }
     std::vector<glm::vec3> positions(mesh.positions.size() / 3);
-    for (size_t i = 0; i < positions.size(); ++i) positions[i] = {mesh.positions[3 * i], mesh.positions[3 * i + 1], mesh.positions[3 * i + 2]};
+    for (size_t i = 0; i < positions.size(); ++i)
+        positions[i] = {mesh.positions[3 * i], mesh.positions[3 * i + 1], mesh.positions[3 * i + 2]};
     std::vector<std::array<uint32_t, 3>> faces(mesh.indices.size() / 3);
-    for (size_t i = 0; i < faces.size(); ++i) faces[i] = {mesh.indices[3 * i], mesh.indices[3 * i + 1], mesh.indices[3 * i + 2]};
+    for (size_t i = 0; i < faces.size(); ++i)
+        faces[i] = {mesh.indices[3 * i], mesh.indices[3 * i + 1], mesh.indices[3 * i + 2]};
     const SubdividedMesh limit = loop_subdivide(std::move(positions), std::move(faces), levels);
     if (!limit.error.empty()) {
-        reader.error("indices", fmt::format("the mesh cannot be subdivided: {}", limit.error), "each edge belongs to at most two faces that run alike");
+        reader.error("indices", fmt::format("the mesh cannot be subdivided: {}", limit.error),
+                     "each edge belongs to at most two faces that run alike");
         return;
     }
     mesh.positions.clear(), mesh.indices.clear();
@@ -49,7 +54,8 @@ ParameterSpecs specs() {
     };
 }
 
-const RegisterShape loopsubdiv("loopsubdiv", "The limit surface of Loop's subdivision of a triangle mesh.", specs(), build);
+const RegisterShape loopsubdiv("loopsubdiv", "The limit surface of Loop's subdivision of a triangle mesh.", specs(),
+                               build);
 
 }  // namespace
 

@@ -22,9 +22,13 @@ void append(std::vector<T>& to, std::vector<T>&& from) {
     }
 }
 
-glm::vec3 point(const std::vector<float>& values, size_t i) { return {values[3 * i], values[3 * i + 1], values[3 * i + 2]}; }
+glm::vec3 point(const std::vector<float>& values, size_t i) {
+    return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+}
 
-void put(std::vector<float>& values, size_t i, glm::vec3 v) { values[3 * i] = v.x, values[3 * i + 1] = v.y, values[3 * i + 2] = v.z; }
+void put(std::vector<float>& values, size_t i, glm::vec3 v) {
+    values[3 * i] = v.x, values[3 * i + 1] = v.y, values[3 * i + 2] = v.z;
+}
 
 void transform_mesh(Mesh& mesh, const glm::mat4& matrix, bool negate_normals) {
     if (matrix != glm::mat4(1.0f))
@@ -45,7 +49,8 @@ double patch_area(glm::dvec3 p00, glm::dvec3 p10, glm::dvec3 p01, glm::dvec3 p11
     for (int i = 0; i < kSteps; ++i)
         for (int j = 0; j < kSteps; ++j) {
             const double u = (i + 0.5) / kSteps, v = (j + 0.5) / kSteps;
-            const glm::dvec3 du = (1.0 - v) * (p10 - p00) + v * (p11 - p01), dv = (1.0 - u) * (p01 - p00) + u * (p11 - p10);
+            const glm::dvec3 du = (1.0 - v) * (p10 - p00) + v * (p11 - p01),
+                             dv = (1.0 - u) * (p01 - p00) + u * (p11 - p10);
             area += glm::length(glm::cross(du, dv));
         }
     return area / (kSteps * kSteps);
@@ -60,7 +65,8 @@ void add_lights(ShapeContext& context, const Mesh& mesh, uint32_t geometry) {
         kernel::LightRecord light{};
         double area;
         if (mesh.corners == 3) {
-            area = 0.5 * glm::length(glm::cross(glm::dvec3(p[1]) - glm::dvec3(p[0]), glm::dvec3(p[2]) - glm::dvec3(p[0])));
+            area =
+                0.5 * glm::length(glm::cross(glm::dvec3(p[1]) - glm::dvec3(p[0]), glm::dvec3(p[2]) - glm::dvec3(p[0])));
             light.data.x = kernel::LIGHT_TRIANGLE;
             light.v0 = {p[0], float(area)}, light.v1 = {p[1], 0.0f}, light.v2 = {p[2], 0.0f};
         } else {
@@ -95,28 +101,41 @@ bool check_mesh(ShapeContext& context, const Mesh& mesh) {
         return false;
     };
     const size_t vertices = mesh.positions.size() / 3;
-    if (mesh.positions.empty() && reader.has("P")) return fail("P", "the mesh has no vertices", "\"point3 P\" with 3 numbers a vertex");
+    if (mesh.positions.empty() && reader.has("P"))
+        return fail("P", "the mesh has no vertices", "\"point3 P\" with 3 numbers a vertex");
     if (mesh.positions.empty()) return false;  // told as a missing parameter
     if (mesh.positions.size() % 3 != 0)
         return fail("P", fmt::format("\"P\" has {} numbers", mesh.positions.size()), "3 a vertex");
-    if (mesh.indices.empty()) return fail("indices", "the mesh has no faces", fmt::format("\"integer indices\" with {} vertices a face", mesh.corners));
+    if (mesh.indices.empty())
+        return fail("indices", "the mesh has no faces",
+                    fmt::format("\"integer indices\" with {} vertices a face", mesh.corners));
     if (mesh.indices.size() % mesh.corners != 0)
-        return fail("indices", fmt::format("\"indices\" has {} numbers", mesh.indices.size()), fmt::format("{} a face", mesh.corners));
+        return fail("indices", fmt::format("\"indices\" has {} numbers", mesh.indices.size()),
+                    fmt::format("{} a face", mesh.corners));
     if (!mesh.normals.empty() && mesh.normals.size() != mesh.positions.size())
-        return fail("N", fmt::format("\"N\" has {} numbers for {} vertices", mesh.normals.size(), vertices), fmt::format("{}, 3 a vertex", 3 * vertices));
+        return fail("N", fmt::format("\"N\" has {} numbers for {} vertices", mesh.normals.size(), vertices),
+                    fmt::format("{}, 3 a vertex", 3 * vertices));
     if (!mesh.uvs.empty() && mesh.uvs.size() != 2 * vertices)
-        return fail("uv", fmt::format("\"uv\" has {} numbers for {} vertices", mesh.uvs.size(), vertices), fmt::format("{}, 2 a vertex", 2 * vertices));
+        return fail("uv", fmt::format("\"uv\" has {} numbers for {} vertices", mesh.uvs.size(), vertices),
+                    fmt::format("{}, 2 a vertex", 2 * vertices));
     for (size_t i = 0; i < mesh.indices.size(); ++i)
         if (mesh.indices[i] >= vertices)
-            return fail("indices", fmt::format("index {} (number {} of \"indices\") is outside of the {} vertices", int32_t(mesh.indices[i]), i, vertices),
+            return fail("indices",
+                        fmt::format("index {} (number {} of \"indices\") is outside of the {} vertices",
+                                    int32_t(mesh.indices[i]), i, vertices),
                         fmt::format("0 to {}", vertices - 1));
-    if (vertices >= (size_t(1) << 31) || context.build.scene.indices.size() + mesh.indices.size() >= (size_t(1) << 32) ||
+    if (vertices >= (size_t(1) << 31) ||
+        context.build.scene.indices.size() + mesh.indices.size() >= (size_t(1) << 32) ||
         context.build.scene.positions.size() / 3 + vertices >= (size_t(1) << 32) / 3)
-        return fail("P", fmt::format("the mesh of {} vertices does not fit beside the others", vertices), "kernels count to 2^32 coordinates");
+        return fail("P", fmt::format("the mesh of {} vertices does not fit beside the others", vertices),
+                    "kernels count to 2^32 coordinates");
     for (const std::vector<float>* values : {&mesh.positions, &mesh.normals, &mesh.uvs})
         for (const float value : *values)
             if (!std::isfinite(value))
-                return fail(values == &mesh.positions ? "P" : values == &mesh.normals ? "N" : "uv", "a coordinate of the mesh is not finite", "");
+                return fail(values == &mesh.positions ? "P"
+                            : values == &mesh.normals ? "N"
+                                                      : "uv",
+                            "a coordinate of the mesh is not finite", "");
     return true;
 }
 

@@ -16,7 +16,8 @@ void build(ShapeContext& context) {
     for (const char* name : {"displacement", "edgelength"}) {
         if (!reader.find(name)) continue;
         if (std::string_view(name) == "displacement")
-            context.build.diagnostics.unsupported(reader.location(name), "displacement of a mesh", "without it, the mesh is as in the file");
+            context.build.diagnostics.unsupported(reader.location(name), "displacement of a mesh",
+                                                  "without it, the mesh is as in the file");
     }
     if (filename.empty()) return;  // told as a missing parameter
     const std::string path = context.build.resolve(filename);
@@ -24,8 +25,10 @@ void build(ShapeContext& context) {
     if (!std::filesystem::is_regular_file(path, code)) {
         std::vector<std::string> near;
         const auto folder = std::filesystem::path(path).parent_path();
-        for (const auto& entry : std::filesystem::directory_iterator(folder, code)) near.push_back(entry.path().filename().string());
-        reader.error("filename", fmt::format("there is no file {}{}", shown(path), did_you_mean(std::filesystem::path(path).filename().string(), near)));
+        for (const auto& entry : std::filesystem::directory_iterator(folder, code))
+            near.push_back(entry.path().filename().string());
+        reader.error("filename", fmt::format("there is no file {}{}", shown(path),
+                                             did_you_mean(std::filesystem::path(path).filename().string(), near)));
         return;
     }
     PlyMesh ply;
@@ -36,9 +39,13 @@ void build(ShapeContext& context) {
         return;
     }
     if (ply.skipped_faces > 0)
-        context.build.diagnostics.warning(reader.location("filename"), fmt::format("{} faces of {} have neither three nor four vertices and are left out", ply.skipped_faces, shown(filename)));
+        context.build.diagnostics.warning(
+            reader.location("filename"),
+            fmt::format("{} faces of {} have neither three nor four vertices and are left out", ply.skipped_faces,
+                        shown(filename)));
     if (ply.triangles.empty() && ply.quads.empty())
-        context.build.diagnostics.warning(reader.location("filename"), fmt::format("the mesh {} has no faces", shown(filename)));
+        context.build.diagnostics.warning(reader.location("filename"),
+                                          fmt::format("the mesh {} has no faces", shown(filename)));
     // Quads become bilinear patches beside the triangles, as in pbrt-v4, with vertices of their own where there are both.
     Mesh quads;
     const bool has_triangles = !ply.triangles.empty();
@@ -46,7 +53,8 @@ void build(ShapeContext& context) {
         quads.corners = 4;
         quads.indices = std::move(ply.quads);
         if (!has_triangles) {
-            quads.positions = std::move(ply.positions), quads.normals = std::move(ply.normals), quads.uvs = std::move(ply.uvs);
+            quads.positions = std::move(ply.positions), quads.normals = std::move(ply.normals),
+            quads.uvs = std::move(ply.uvs);
         } else {
             quads.positions = ply.positions, quads.normals = ply.normals, quads.uvs = ply.uvs;
         }
@@ -54,7 +62,8 @@ void build(ShapeContext& context) {
     if (has_triangles) {
         Mesh triangles;
         triangles.indices = std::move(ply.triangles);
-        triangles.positions = std::move(ply.positions), triangles.normals = std::move(ply.normals), triangles.uvs = std::move(ply.uvs);
+        triangles.positions = std::move(ply.positions), triangles.normals = std::move(ply.normals),
+        triangles.uvs = std::move(ply.uvs);
         if (check_mesh(context, triangles)) add_mesh(context, std::move(triangles));
     }
     if (!quads.indices.empty() && check_mesh(context, quads)) add_mesh(context, std::move(quads));
@@ -68,7 +77,8 @@ ParameterSpecs specs() {
     };
 }
 
-const RegisterShape plymesh("plymesh", "A mesh from a PLY file: triangles, and quads as bilinear patches.", specs(), build);
+const RegisterShape plymesh("plymesh", "A mesh from a PLY file: triangles, and quads as bilinear patches.", specs(),
+                            build);
 
 }  // namespace
 

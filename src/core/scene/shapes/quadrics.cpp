@@ -12,7 +12,9 @@ namespace lampyris {
 namespace {
 
 // By how much a transform stretches lengths, on average: exact for uniform scales. Chooses lights, nothing else.
-float mean_stretch(const glm::mat4& m) { return float(std::cbrt(std::abs(glm::determinant(glm::dmat3(glm::mat3(m)))))); }
+float mean_stretch(const glm::mat4& m) {
+    return float(std::cbrt(std::abs(glm::determinant(glm::dmat3(glm::mat3(m))))));
+}
 
 void add_quadric(ShapeContext& context, uint32_t kind, kernel::vec4 params, float area) {
     const glm::mat4& matrix = context.shape.world_from_object.matrix[0];
@@ -29,7 +31,9 @@ void add_quadric(ShapeContext& context, uint32_t kind, kernel::vec4 params, floa
     add_area_light(context, light, index, 0u, area * stretch * stretch, area);
 }
 
-float read_phi(ShapeContext& context) { return context.reader.get_float("phimax") * std::numbers::pi_v<float> / 180.0f; }
+float read_phi(ShapeContext& context) {
+    return context.reader.get_float("phimax") * std::numbers::pi_v<float> / 180.0f;
+}
 
 // zmin and zmax in order, and not equal.
 bool read_heights(ShapeContext& context, float& low, float& high) {
@@ -60,7 +64,8 @@ void build_disk(ShapeContext& context) {
         reader.error("innerradius", "\"innerradius\" leaves nothing of the disk", "less than \"radius\"");
         return;
     }
-    add_quadric(context, kernel::GEOMETRY_DISK, {reader.get_float("height"), radius, inner, phi}, 0.5f * phi * (radius * radius - inner * inner));
+    add_quadric(context, kernel::GEOMETRY_DISK, {reader.get_float("height"), radius, inner, phi},
+                0.5f * phi * (radius * radius - inner * inner));
 }
 
 void build_cylinder(ShapeContext& context) {
@@ -72,16 +77,21 @@ void build_cylinder(ShapeContext& context) {
 }
 
 ParameterSpec radius_spec() { return real("radius", 1.0, "radius").above(0).in("scene units"); }
-ParameterSpec phi_spec() { return real("phimax", 360.0, "how far the shape goes round the z axis").above(0).between(0, 360).in("degrees"); }
+ParameterSpec phi_spec() {
+    return real("phimax", 360.0, "how far the shape goes round the z axis").above(0).between(0, 360).in("degrees");
+}
 
 const RegisterShape sphere("sphere", "A sphere around the origin, or a part of it.",
                            {radius_spec(), real("zmin", -1.0, "lowest z; default: -radius").in("scene units"),
-                            real("zmax", 1.0, "highest z; default: radius").in("scene units"), phi_spec()}, build_sphere);
+                            real("zmax", 1.0, "highest z; default: radius").in("scene units"), phi_spec()},
+                           build_sphere);
 const RegisterShape disk("disk", "A disk or ring around the z axis, facing +z.",
                          {radius_spec(), real("height", 0.0, "its z").in("scene units"),
-                          real("innerradius", 0.0, "of the hole").at_least(0).in("scene units"), phi_spec()}, build_disk);
+                          real("innerradius", 0.0, "of the hole").at_least(0).in("scene units"), phi_spec()},
+                         build_disk);
 const RegisterShape cylinder("cylinder", "The mantle of a cylinder around the z axis.",
-                             {radius_spec(), real("zmin", -1.0, "one end").in("scene units"), real("zmax", 1.0, "the other end").in("scene units"), phi_spec()},
+                             {radius_spec(), real("zmin", -1.0, "one end").in("scene units"),
+                              real("zmax", 1.0, "the other end").in("scene units"), phi_spec()},
                              build_cylinder);
 
 }  // namespace

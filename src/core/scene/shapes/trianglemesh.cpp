@@ -9,7 +9,8 @@ void build(ShapeContext& context) {
     Mesh mesh;
     context.reader.take_ints("faceIndices");
     if (!context.reader.take_floats("S").empty())
-        context.build.diagnostics.unsupported(context.reader.location("S"), "tangents of a mesh (\"S\")", "without them, tangents follow uv");
+        context.build.diagnostics.unsupported(context.reader.location("S"), "tangents of a mesh (\"S\")",
+                                              "without them, tangents follow uv");
     if (read_mesh(context, mesh)) add_mesh(context, std::move(mesh));
 }
 

@@ -13,8 +13,9 @@ const RegisterTexture registration(
         kernel::TextureOp op{};
         op.data.x = kernel::TEXTURE_BILERP;
         context.read_mapping(op);
-        return context.combine({context.operand("v00", 0.0f), context.operand("v01", 1.0f), context.operand("v10", 0.0f),
-                                context.operand("v11", 1.0f)}, op);
+        return context.combine({context.operand("v00", 0.0f), context.operand("v01", 1.0f),
+                                context.operand("v10", 0.0f), context.operand("v11", 1.0f)},
+                               op);
     });
 
 }  // namespace

@@ -3,9 +3,10 @@
 namespace lampyris {
 namespace {
 
-const RegisterTexture registration("constant", "The same value everywhere.",
-                                   {value("value", ParameterType::kSpectrum, "1", "the value; of a float texture a float").textured()},
-                                   [](TextureContext& context) { return context.operand("value", 1.0f); });
+const RegisterTexture registration(
+    "constant", "The same value everywhere.",
+    {value("value", ParameterType::kSpectrum, "1", "the value; of a float texture a float").textured()},
+    [](TextureContext& context) { return context.operand("value", 1.0f); });
 
 }  // namespace
 }  // namespace lampyris

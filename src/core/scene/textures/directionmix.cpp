@@ -9,7 +9,8 @@ namespace {
 
 TextureProgram make(TextureContext& context) {
     glm::dvec3 direction(0.0, 1.0, 0.0);
-    if (const std::vector<float> given = context.reader.get_tuple("dir", 3); given.size() == 3) direction = {given[0], given[1], given[2]};
+    if (const std::vector<float> given = context.reader.get_tuple("dir", 3); given.size() == 3)
+        direction = {given[0], given[1], given[2]};
     direction = glm::dmat3(glm::dmat4(context.texture.world_from_texture.matrix[0])) * direction;
     const double length = glm::length(direction);
     if (!(length > 0.0) || !std::isfinite(length)) {
@@ -23,8 +24,10 @@ TextureProgram make(TextureContext& context) {
 }
 
 const RegisterTexture registration(
-    "directionmix", "tex1 where the surface faces a direction, or away from it; tex2 where it lies across: the share is |cos|.",
-    {value("tex1", ParameterType::kSpectrum, "0", "of surfaces that face the direction; of a float texture a float").textured(),
+    "directionmix",
+    "tex1 where the surface faces a direction, or away from it; tex2 where it lies across: the share is |cos|.",
+    {value("tex1", ParameterType::kSpectrum, "0", "of surfaces that face the direction; of a float texture a float")
+         .textured(),
      value("tex2", ParameterType::kSpectrum, "1", "of surfaces that lie along it").textured(),
      value("dir", ParameterType::kVector3, "0 1 0", "the direction")},
     make);

@@ -22,7 +22,8 @@ TexelEncoding read_encoding(TextureContext& context) {
         const auto [end, code] = std::from_chars(first, last, result.gamma);
         if (code == std::errc() && end == last && result.gamma > 0.0f && result.gamma < 100.0f) return result;
     }
-    context.reader.error("encoding", fmt::format("\"{}\" is no encoding", shown(encoding)), "write \"sRGB\", \"linear\", or \"gamma 2.2\"");
+    context.reader.error("encoding", fmt::format("\"{}\" is no encoding", shown(encoding)),
+                         "write \"sRGB\", \"linear\", or \"gamma 2.2\"");
     return {};
 }
 
@@ -39,7 +40,8 @@ TextureProgram make(TextureContext& context) {
     lookup.filtering = filter == "point" ? kernel::FILTER_POINT : kernel::FILTER_BILINEAR;
     reader.get_float("maxanisotropy");
     if (filter == "trilinear" || filter == "EWA") {
-        const std::string note = fmt::format("imagemap filter \"{}\" is sampled as \"bilinear\": samples average over the pixel", filter);
+        const std::string note =
+            fmt::format("imagemap filter \"{}\" is sampled as \"bilinear\": samples average over the pixel", filter);
         std::vector<std::string>& notes = context.builder.context().scene.notes;
         if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
     }
@@ -57,13 +59,16 @@ TextureProgram make(TextureContext& context) {
 
 const RegisterTexture registration(
     "imagemap", "An image from a file, of any format that OpenImageIO reads; (s, t) = (0, 0) is its lower left corner.",
-    with_mapping({text("filename", "", "the file, relative to the scene's folder").needed(),
-                  text("wrap", "repeat", "what is beyond the image's edges").one_of(kWraps),
-                  text("filter", "bilinear", "between texels; trilinear and EWA are sampled as bilinear").one_of({"point", "bilinear", "trilinear", "EWA"}),
-                  real("maxanisotropy", 8.0, "of filter EWA, without effect"),
-                  text("encoding", "", "of integer formats: sRGB, linear, or \"gamma\" and a number; what the file says where it is left out"),
-                  real("scale", 1.0, "factor of the image's values"),
-                  boolean("invert", false, "show one minus the scaled value")}),
+    with_mapping(
+        {text("filename", "", "the file, relative to the scene's folder").needed(),
+         text("wrap", "repeat", "what is beyond the image's edges").one_of(kWraps),
+         text("filter", "bilinear", "between texels; trilinear and EWA are sampled as bilinear")
+             .one_of({"point", "bilinear", "trilinear", "EWA"}),
+         real("maxanisotropy", 8.0, "of filter EWA, without effect"),
+         text("encoding", "",
+              "of integer formats: sRGB, linear, or \"gamma\" and a number; what the file says where it is left out"),
+         real("scale", 1.0, "factor of the image's values"),
+         boolean("invert", false, "show one minus the scaled value")}),
     make);
 
 }  // namespace

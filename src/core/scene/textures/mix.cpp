@@ -11,7 +11,8 @@ const RegisterTexture registration(
     [](TextureContext& context) {
         kernel::TextureOp op{};
         op.data.x = kernel::TEXTURE_MIX;
-        return context.combine({context.operand("tex1", 0.0f), context.operand("tex2", 1.0f), context.float_operand("amount", 0.5f)}, op);
+        return context.combine(
+            {context.operand("tex1", 0.0f), context.operand("tex2", 1.0f), context.float_operand("amount", 0.5f)}, op);
     });
 
 }  // namespace

@@ -11,7 +11,8 @@ TextureProgram program_of(TextureContext& context, uint32_t kind, bool is_spectr
         context.reader.diagnostics().error(
             context.texture.type_location,
             fmt::format("texture \"{}\" is a {} texture", context.texture.type, is_spectrum ? "spectrum" : "float"),
-            fmt::format("write Texture \"{}\" \"{}\" \"{}\"", shown(context.texture.name), is_spectrum ? "spectrum" : "float", context.texture.type));
+            fmt::format("write Texture \"{}\" \"{}\" \"{}\"", shown(context.texture.name),
+                        is_spectrum ? "spectrum" : "float", context.texture.type));
     }
     TextureProgram program = constant_program(glm::vec3(0.0f));
     kernel::TextureOp& op = program.ops[0];
@@ -42,7 +43,9 @@ ParameterSpecs marble_specs() {
 const RegisterTexture fbm("fbm", "Fractional Brownian motion: octaves of noise.", octave_specs(),
                           [](TextureContext& context) { return program_of(context, kernel::TEXTURE_FBM, false); });
 const RegisterTexture wrinkled("wrinkled", "Turbulence: octaves of the absolute value of noise.", octave_specs(),
-                               [](TextureContext& context) { return program_of(context, kernel::TEXTURE_WRINKLED, false); });
+                               [](TextureContext& context) {
+                                   return program_of(context, kernel::TEXTURE_WRINKLED, false);
+                               });
 const RegisterTexture windy("windy", "Waves on water, higher where a gust of wind is.", {},
                             [](TextureContext& context) { return program_of(context, kernel::TEXTURE_WINDY, false); });
 const RegisterTexture marble("marble", "Veins of marble.", marble_specs(),
