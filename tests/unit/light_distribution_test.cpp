@@ -90,9 +90,9 @@ TEST(FilterTable, IntervalsKeepTheirSignAndTablesFollowEachOther) {
     const uint32_t offset = append_filter_table(sinc, 4, tent, 1, tables);
     EXPECT_EQ(offset, 5u);
     constexpr uint32_t n = kFilterTableSize;
-    ASSERT_EQ(tables.size(), 5 + 2 * (2 * n + 3));
+    ASSERT_EQ(tables.size(), 5 + 2 * kFilterTableFloats);
     const float* x = tables.data() + offset;
-    const float* y = x + 2 * n + 3;
+    const float* y = x + kFilterTableFloats;
     for (uint32_t i = 0; i < n; ++i) {
         EXPECT_GE(x[i] * x[i + 1], 0);
         EXPECT_LE(x[n + 1 + i], x[n + 2 + i]);
@@ -103,6 +103,14 @@ TEST(FilterTable, IntervalsKeepTheirSignAndTablesFollowEachOther) {
     EXPECT_EQ(y[2 * n + 2], 1);
     // A tent's CDF from its peak: 1 - (1 - x)^2.
     for (uint32_t i = 0; i <= n; ++i) EXPECT_NEAR(y[n + 1 + i], 1 - std::pow(1 - double(i) / n, 2), 1e-6);
+    // The guide never points past a number's interval, and hardly before it.
+    for (const float* table : {x, y}) {
+        const float *cdf = table + n + 1, *guide = table + 2 * n + 3;
+        for (uint32_t i = 0; i < n; ++i) {
+            EXPECT_LE(cdf[uint32_t(guide[i])], float(i) / n);
+            EXPECT_GT(cdf[uint32_t(guide[i]) + 1], float(i) / n - 2e-6f);
+        }
+    }
 }
 
 TEST(FilterTable, RefusesAFilterWithoutIntegral) {

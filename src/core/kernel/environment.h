@@ -8,15 +8,13 @@
 
 // The interval of a CDF of `count` intervals (count + 1 numbers from 0 to 1 in `distributions`) that u in [0, 1) falls into.
 FN uint find_interval(uint first, uint count, float u) {
+    // Without a branch on the comparison, which no processor could foresee.
     uint low = 0u;
-    uint high = count;
-    while (high - low > 1u) {
-        uint middle = (low + high) >> 1u;
-        if (distributions[first + middle] <= u) {
-            low = middle;
-        } else {
-            high = middle;
-        }
+    uint size = count;
+    while (size > 1u) {
+        uint half_size = size >> 1u;
+        low = distributions[first + low + half_size] <= u ? low + half_size : low;
+        size -= half_size;
     }
     return low;
 }

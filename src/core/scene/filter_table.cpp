@@ -1,5 +1,6 @@
 #include "core/scene/filter_table.h"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -15,6 +16,7 @@ double sinc(double x) {
 void append_axis(const std::function<double(double)>& filter, double radius, std::vector<float>& distributions) {
     constexpr uint32_t n = kFilterTableSize;
     std::vector<double> node(n + 1);
+    std::array<float, n> guide{};
     for (uint32_t i = 0; i <= n; ++i) node[i] = filter(radius * i / n);
     // A change of sign is put at the nearer node, so that each interval has one sign.
     for (uint32_t i = 0; i < n; ++i) {
@@ -35,6 +37,13 @@ void append_axis(const std::function<double(double)>& filter, double radius, std
         distributions.push_back(float(below / absolute));
     }
     distributions.push_back(float(absolute / integral));
+    // Where to look for a number between i/n and (i+1)/n: at or before its interval, however i = floor(u n) was rounded.
+    const auto cdf = distributions.end() - (n + 2);
+    for (uint32_t i = 0, cell = 0; i < n; ++i) {
+        while (cell + 1 < n && double(cdf[std::ptrdiff_t(cell) + 1]) <= double(i) / n - 1e-6) ++cell;
+        guide[i] = float(cell);
+    }
+    distributions.insert(distributions.end(), guide.begin(), guide.end());
 }
 
 }  // namespace

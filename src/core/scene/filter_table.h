@@ -10,6 +10,8 @@ namespace lampyris {
 // Intervals of a table between the pixel's centre and the filter's radius: linear interpolation is then within 0.1 % of
 // the filter's peak, also for the lobes of a sinc of radius 4.
 inline constexpr uint32_t kFilterTableSize = 128;
+// Floats of one axis: nodes, CDF, what the absolute value integrates to over the filter's integral, guide.
+inline constexpr uint32_t kFilterTableFloats = 3 * kFilterTableSize + 3;
 
 // The filters of pbrt-v4 (4th edition, section 8.8), by the distance x from the centre in pixels; not normalised.
 double gaussian_filter(double x, double radius, double sigma);
