@@ -1,6 +1,7 @@
 // Scenes put together by hand, record by record, for tests of kernels that read a scene.
 #pragma once
 
+#include "core/scene/area_lights.h"
 #include "core/scene/light_distribution.h"
 #include "core/scene/scene.h"
 
@@ -70,18 +71,16 @@ class TestScene {
         kernel::GeometryRecord& g = scene.geometries[geometry];
         kernel::LightRecord light{};
         const bool triangle = g.data.x == kernel::GEOMETRY_TRIANGLES;
-        light.data = {triangle ? kernel::LIGHT_TRIANGLE : kernel::LIGHT_GEOMETRY, flags, kernel::NONE, kernel::NONE};
-        light.ids = {geometry, 0, 0, 0};
         if (triangle) {
             std::array<glm::vec3, 3> p;
             for (uint32_t i = 0; i < 3; ++i) {
                 const float* v = &scene.positions[3 * (g.data.w + scene.indices[g.data.z + i])];
                 p[i] = {v[0], v[1], v[2]};
             }
-            light.v0 = glm::vec4(p[0], 0.5f * glm::length(glm::cross(p[1] - p[0], p[2] - p[0])));
-            light.v1 = glm::vec4(p[1], 0.0f);
-            light.v2 = glm::vec4(p[2], 0.0f);
+            light = triangle_light(p[0], p[1], p[2], g.data.y);
         }
+        light.data = {triangle ? kernel::LIGHT_TRIANGLE : kernel::LIGHT_GEOMETRY, flags, kernel::NONE, kernel::NONE};
+        light.ids = {geometry, 0, 0, 0};
         g.ids.y = uint32_t(scene.lights.size());
         return add_light(light, radiance);
     }

@@ -186,9 +186,11 @@ struct LightRecord {
         emission;  // rgb: radiance, intensity or irradiance, or the scale of the texture or image; w: the probability of choosing this light
     vec4 v0;  // triangle: p0, w: area. point, spot, ...: position. distant: unit direction towards the light, w: unused
     vec4
-        v1;  // triangle: p1 (order of the indices). spot: unit axis (away from the light), w: cosine at which the falloff begins
+        v1;  // triangle: p1 (order of the indices), w: distance of the farthest corner from the centroid. spot: unit axis (away from the light), w: cosine at which the falloff begins
     vec4
         v2;  // triangle: p2. spot: w: cosine at which it ends. projection: the picture's xmin, ymin, xmax, ymax at z = 1 in light space
+    vec4
+        normal;  // triangle: unit normal, turned as the geometry's flags say; w: 1 where vertex normals turn it (point by point)
 };
 
 // ---- Camera, film, scene ---------------------------------------------------------------------------------------------
@@ -202,8 +204,9 @@ CONST uint PIXEL_FILTER_TRIANGLE = 1u;
 CONST uint PIXEL_FILTER_GAUSSIAN = 2u;  // and the other smooth ones: sampled from a table in `distributions`
 
 // A smooth filter has one table of n intervals from the centre to the radius for x and then one for y: the filter's value at
-// the n + 1 nodes (no interval changes its sign), the n + 1 numbers of the CDF of its absolute value, linear between nodes, and
-// the integral of the absolute value over the filter's.
+// the n + 1 nodes (no interval changes its sign), the n + 1 numbers of the CDF of its absolute value, linear between nodes,
+// the integral of the absolute value over the filter's, and a guide to the CDF (Chen and Asau 1974): entry i is an interval at
+// or just before the one that a number from i/n on falls into.
 struct CameraRecord {
     uvec4 data;  // kind, filter kind, offset of the filter's tables in `distributions`, their number of intervals n
     uvec4 film;  // full resolution x, y, and the crop window's origin x, y

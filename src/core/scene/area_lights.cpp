@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <glm/glm.hpp>
 
+#include <algorithm>
 #include <numbers>
 
 namespace lampyris {
@@ -77,6 +78,26 @@ const RegisterAreaLight diffuse("diffuse", "Emits the same radiance in all direc
                                 build_diffuse);
 
 }  // namespace
+
+kernel::LightRecord triangle_light(const glm::vec3& p0, const glm::vec3& p1, const glm::vec3& p2,
+                                   uint32_t geometry_flags) {
+    const glm::dvec3 a(p0), b(p1), c(p2);
+    const glm::dvec3 centroid = (a + b + c) / 3.0;
+    const double radius =
+        std::max({glm::distance(centroid, a), glm::distance(centroid, b), glm::distance(centroid, c)});
+    const glm::dvec3 cross = glm::cross(b - a, c - a);
+    const double length = glm::length(cross);
+    glm::dvec3 normal = length > 0.0 ? cross / length : glm::dvec3(0.0, 0.0, 1.0);
+    const bool smooth = (geometry_flags & kernel::GEOMETRY_HAS_NORMALS) != 0u;
+    if (!smooth && (geometry_flags & kernel::GEOMETRY_FLIP) != 0u) normal = -normal;
+    kernel::LightRecord light{};
+    light.data.x = kernel::LIGHT_TRIANGLE;
+    light.v0 = {p0, float(0.5 * length)};
+    light.normal = {normal, smooth ? 1.0f : 0.0f};
+    light.v1 = {p1, float(radius)};
+    light.v2 = {p2, 0.0f};
+    return light;
+}
 
 void begin_area_lights(ShapeContext& context, uint32_t geometry, uint32_t primitive_count) {
     // Counted among the lights that are not infinite; build_scene moves it behind the infinite ones.

@@ -65,10 +65,8 @@ void add_lights(ShapeContext& context, const Mesh& mesh, uint32_t geometry) {
         kernel::LightRecord light{};
         double area;
         if (mesh.corners == 3) {
-            area =
-                0.5 * glm::length(glm::cross(glm::dvec3(p[1]) - glm::dvec3(p[0]), glm::dvec3(p[2]) - glm::dvec3(p[0])));
-            light.data.x = kernel::LIGHT_TRIANGLE;
-            light.v0 = {p[0], float(area)}, light.v1 = {p[1], 0.0f}, light.v2 = {p[2], 0.0f};
+            light = triangle_light(p[0], p[1], p[2], context.build.scene.geometries[geometry].data.y);
+            area = double(light.v0.w);
         } else {
             area = patch_area(p[0], p[1], p[2], p[3]);
             light.data.x = kernel::LIGHT_GEOMETRY;
