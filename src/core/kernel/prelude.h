@@ -12,7 +12,11 @@
 #define OUT(T) T&
 #define INOUT(T) T&
 #define CONST static constexpr
+#ifdef KERNEL_INLINE_ALL
+#define FN inline __attribute__((always_inline))
+#else
 #define FN inline
+#endif
 // Buffers of the scene (set 0) and of the kernel (set 1): `scene_buffers_` and `kernel_buffers_` are the instance's two tables.
 #define SCENE_RO(binding_, T, name) const T* __restrict name = static_cast<const T*>(scene_buffers_[binding_]);
 #define BUFFER_RO(binding_, T, name) const T* __restrict name = static_cast<const T*>(kernel_buffers_[binding_]);
