@@ -141,6 +141,12 @@ FN bool bsdf_is_specular(IN(Bsdf) b) {
     return true;
 }
 
+// Whether bsdf_sample looks at its number `uc`.
+FN bool bsdf_chooses_lobe(IN(Bsdf) b) {
+    if (!HAS(EFFECT_DIELECTRIC | EFFECT_THIN_DIELECTRIC | EFFECT_DIFFUSE_TRANSMISSION | EFFECT_COAT)) return false;
+    return b.kind != MATERIAL_DIFFUSE && b.kind != MATERIAL_CONDUCTOR;
+}
+
 // Value f(wo, wi) without the cosine, and density of bsdf_sample choosing wi (per solid angle): 0 where only delta lobes
 // scatter. `transport` says what flows along wi -> wo. A pdf that is not used costs nothing after inlining.
 FN vec3 bsdf_eval_pdf(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport, OUT(float) pdf) {

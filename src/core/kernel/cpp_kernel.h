@@ -18,7 +18,6 @@ using glm::mat3;
 using glm::uvec2;
 using glm::uvec3;
 
-using glm::abs;
 using glm::all;
 using glm::any;
 using glm::ceil;
@@ -43,6 +42,12 @@ inline uint bitfieldReverse(uint x) {
     x = ((x & 0x33333333u) << 2u) | ((x & 0xccccccccu) >> 2u);
     return ((x & 0x55555555u) << 1u) | ((x & 0xaaaaaaaau) >> 1u);
 }
+// GLM's is `x >= 0 ? x : -x`: a comparison and a choice where one bit has to be cleared.
+inline float abs(float x) { return __builtin_fabsf(x); }
+inline int abs(int x) { return x < 0 ? -x : x; }
+inline vec2 abs(vec2 v) { return vec2(abs(v.x), abs(v.y)); }
+inline vec3 abs(vec3 v) { return vec3(abs(v.x), abs(v.y), abs(v.z)); }
+inline vec4 abs(vec4 v) { return vec4(abs(v.x), abs(v.y), abs(v.z), abs(v.w)); }
 inline bool isnan(float x) { return x != x; }
 inline bool isinf(float x) { return abs(x) > 3.4028235e38f; }
 inline void atomic_add_u32(uint* place, uint value) {

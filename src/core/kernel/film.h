@@ -14,7 +14,9 @@ FN uvec2 film_pixel_of(uint index, uvec4 window) {
 
 FN float compensated_add(float sum, float value, INOUT(float) low) {
     float next = sum + value;
-    low += abs(sum) >= abs(value) ? (sum - next) + value : (value - next) + sum;
+    float of_value = next - sum;
+    low += (sum - (next - of_value)) +
+           (value - of_value);  // exact, whichever is larger (Knuth, TAOCP 2, 4.2.2, theorem B)
     return next;
 }
 

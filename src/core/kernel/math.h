@@ -46,13 +46,14 @@ FN float gamma_bound(float n) { return (n * MACHINE_EPSILON) / (1.0f - n * MACHI
 
 // sin and cos for |x| up to a few thousand; absolute error below 1e-7.
 FN void sin_cos(float x, OUT(float) s, OUT(float) c) {
-    float q = floor(x * 0.636619772367581f + 0.5f);
+    int n = int(x * 0.636619772367581f + copy_sign(0.5f, x));  // to the nearest; floor is a long way without SSE 4.1
+    float q = float(n);
     float y = ((x - q * 1.5703125f) - q * 4.837512969970703125e-4f) - q * 7.549789954891882e-8f;
     float z = y * y;
     float sine = ((-1.9515295891e-4f * z + 8.3321608736e-3f) * z - 1.6666654611e-1f) * z * y + y;
     float cosine =
         ((2.443315711809948e-5f * z - 1.388731625493765e-3f) * z + 4.166664568298827e-2f) * z * z - 0.5f * z + 1.0f;
-    int quadrant = int(q) & 3;
+    int quadrant = n & 3;
     float a = (quadrant & 1) != 0 ? cosine : sine;
     float b = (quadrant & 1) != 0 ? sine : cosine;
     s = (quadrant & 2) != 0 ? -a : a;
@@ -162,7 +163,7 @@ struct Frame {
 
 // Orthonormal frame about a unit z (Duff et al. 2017, "Building an Orthonormal Basis, Revisited").
 FN Frame frame_from_z(vec3 z) {
-    float s = z.z < 0.0f ? -1.0f : 1.0f;
+    float s = copy_sign(1.0f, z.z);
     float a = -1.0f / (s + z.z);
     float b = z.x * z.y * a;
     Frame frame;
@@ -213,15 +214,14 @@ FN vec3 transform_error(vec4 r0, vec4 r1, vec4 r2, vec3 p, vec3 e) {
     return (g + 1.0f) * carried + g * from_rounding;
 }
 
-FN float next_float_up(float x) {
-    if (x == 0.0f) return 1.17549435e-38f;  // denormals are flushed to zero
+// The float after x in the direction of `offset`'s sign; x where the offset is zero. Signs of coordinates are as good as random:
+// no branch depends on them.
+FN float step_away(float x, float offset) {
     uint bits = floatBitsToUint(x);
-    return uintBitsToFloat(x > 0.0f ? bits + 1u : bits - 1u);
-}
-FN float next_float_down(float x) {
-    if (x == 0.0f) return -1.17549435e-38f;
-    uint bits = floatBitsToUint(x);
-    return uintBitsToFloat(x > 0.0f ? bits - 1u : bits + 1u);
+    uint towards_zero = (bits ^ floatBitsToUint(offset)) >> 31u;
+    float next = uintBitsToFloat(bits + 1u - 2u * towards_zero);
+    next = x == 0.0f ? copy_sign(1.17549435e-38f, offset) : next;  // denormals are flushed to zero
+    return offset == 0.0f ? x : next;
 }
 
 // Where a ray that leaves p towards `direction` starts: outside of p's error box, on the direction's side of the surface
@@ -231,10 +231,7 @@ FN vec3 offset_origin(vec3 p, vec3 error, vec3 ng, vec3 direction) {
     vec3 offset = d * ng;
     if (dot3(direction, ng) < 0.0f) offset = -offset;
     vec3 o = p + offset;
-    o.x = offset.x > 0.0f ? next_float_up(o.x) : (offset.x < 0.0f ? next_float_down(o.x) : o.x);
-    o.y = offset.y > 0.0f ? next_float_up(o.y) : (offset.y < 0.0f ? next_float_down(o.y) : o.y);
-    o.z = offset.z > 0.0f ? next_float_up(o.z) : (offset.z < 0.0f ? next_float_down(o.z) : o.z);
-    return o;
+    return vec3(step_away(o.x, offset.x), step_away(o.y, offset.y), step_away(o.z, offset.z));
 }
 
 // ---- Equal-area octahedral map (Clarberg 2008), as pbrt-v4's environment images use it: the pole is +z ------------------

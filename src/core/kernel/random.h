@@ -72,12 +72,16 @@ FN Sampler sampler_begin(uint pixel, uint sample_index, uint seed, uint kind) {
     return s;
 }
 
+// Seeds of a dimension's scramblings, from one that is well mixed already.
+FN uint seed_of_x(uint seed) { return (seed ^ 0xa511e9b3u) * 0x9e3779b1u; }
+FN uint seed_of_y(uint seed) { return (seed ^ 0x63d83595u) * 0x85ebca6bu; }
+
 // A number by its dimension, for those who skip what they do not need: a dimension keeps its meaning in every sample.
 FN float sample_1d_at(IN(Sampler) s, uint dimension) {
     if (s.kind == SAMPLER_INDEPENDENT) return unit_float(pcg3d(uvec3(s.key, s.index, dimension)).x);
     uint seed = hash_combine(s.key, dimension);
     uint shuffled = bitfieldReverse(scramble_reversed(s.reversed, seed));
-    return unit_float(bitfieldReverse(scramble_reversed(shuffled, hash32(seed ^ 0xa511e9b3u))));
+    return unit_float(bitfieldReverse(scramble_reversed(shuffled, seed_of_x(seed))));
 }
 
 FN vec2 sample_2d_at(IN(Sampler) s, uint dimension) {
@@ -87,8 +91,8 @@ FN vec2 sample_2d_at(IN(Sampler) s, uint dimension) {
     }
     uint seed = hash_combine(s.key, dimension);
     uint shuffled = bitfieldReverse(scramble_reversed(s.reversed, seed));
-    uint x = bitfieldReverse(scramble_reversed(shuffled, hash32(seed ^ 0xa511e9b3u)));
-    uint y = bitfieldReverse(scramble_reversed(sobol_second_reversed(shuffled), hash32(seed ^ 0x63d83595u)));
+    uint x = bitfieldReverse(scramble_reversed(shuffled, seed_of_x(seed)));
+    uint y = bitfieldReverse(scramble_reversed(sobol_second_reversed(shuffled), seed_of_y(seed)));
     return vec2(unit_float(x), unit_float(y));
 }
 

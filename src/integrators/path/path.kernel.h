@@ -100,7 +100,8 @@ FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, IN(Sampler) numbers, 
         }
 
         BsdfSample next;
-        float u_lobe = sample_1d_at(numbers, dimension + 3u);
+        float u_lobe = 0.0f;
+        if (bsdf_chooses_lobe(bsdf)) u_lobe = sample_1d_at(numbers, dimension + 3u);
         vec2 u_direction = sample_2d_at(numbers, dimension + 4u);
         if (!bsdf_sample(bsdf, wo, u_lobe, u_direction, TRANSPORT_RADIANCE, next)) break;
         throughput *= next.f * (abs(next.wi.z) / next.pdf);
