@@ -6,8 +6,9 @@ import subprocess
 
 import pytest
 
-TARGETS = ("parse", "ply")
+TARGETS = ("parse", "ply", "scene")
 SECONDS = int(os.environ.get("LAMPYRIS_FUZZ_SECONDS", "6"))
+LONG_SECONDS = 300  # a target
 
 pytestmark = pytest.mark.skipif(shutil.which("clang++") is None, reason="libFuzzer comes with clang")
 
@@ -21,22 +22,26 @@ def fuzz_build(source_dir):
     return build
 
 
-@pytest.mark.parametrize("target", TARGETS)
-def test_finds_nothing(fuzz_build, source_dir, tmp_path, target):
+def fuzz(build, source_dir, corpus, target, seconds):
     # A fresh folder first: what is found in this run goes there, not into the tree's corpus.
     folder = source_dir / "tests/fuzz"
-    dictionary = folder / ("pbrt.dict" if target == "parse" else "ply.dict")
-    limits = [f"-max_total_time={SECONDS // len(TARGETS)}", "-rss_limit_mb=1024", "-timeout=20", "-max_len=4096"]
-    command = [
-        fuzz_build / f"{target}_fuzz",
-        *limits,
-        f"-dict={dictionary}",
-        f"-artifact_prefix={fuzz_build}/",
-        tmp_path,
-    ]
+    dictionary = folder / ("ply.dict" if target == "ply" else "pbrt.dict")
+    limits = [f"-max_total_time={seconds}", "-rss_limit_mb=1024", "-timeout=20", "-max_len=4096"]
+    command = [build / f"{target}_fuzz", *limits, f"-dict={dictionary}", f"-artifact_prefix={build}/", corpus]
     run = subprocess.run([*command, folder / "corpus" / target], capture_output=True, text=True, check=False)
-    assert run.returncode == 0, f"finding left in {fuzz_build}:\n{run.stderr[-4000:]}"
+    assert run.returncode == 0, f"finding left in {build}:\n{run.stderr[-4000:]}"
     assert "DONE" in run.stderr
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_finds_nothing(fuzz_build, source_dir, tmp_path, target):
+    fuzz(fuzz_build, source_dir, tmp_path, target, SECONDS // len(TARGETS))
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("target", TARGETS)
+def test_finds_nothing_in_minutes(fuzz_build, source_dir, tmp_path, target):
+    fuzz(fuzz_build, source_dir, tmp_path, target, LONG_SECONDS)
 
 
 def test_the_seeds_are_read(fuzz_build, source_dir):
