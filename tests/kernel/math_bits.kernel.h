@@ -34,7 +34,7 @@ KERNEL(math_bits) {
     } else if (which == 8u) {
         r = vec4(offset_origin(v, abs(v) * 1e-6f, unit(v), vec3(p.w, p.x, p.y)), gamma_bound(3.0f));
     } else if (which == 9u) {
-        vec2 square = square_from_direction(unit(v));
+        vec2 square = square_from_direction(dot3(v, v) > 0.0f ? unit(v) : vec3(0.0f, 0.0f, 1.0f));
         r = vec4(direction_from_square(square), square.x + square.y * 2.0f);
     } else if (which == 10u) {
         r = vec4(p.x * p.y + p.z, (p.x + p.y) + p.z - p.x, p.x * (1.0f / 3.0f), p.x / 3.0f);
