@@ -2,6 +2,7 @@
 
 import os
 import re
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -33,6 +34,23 @@ def source_dir():
 def build_dir():
     """The CMake build tree under test, set by ./dev test."""
     return Path(os.environ.get("LAMPYRIS_BUILD_DIR", SOURCE_DIR / "build/release"))
+
+
+@pytest.fixture(scope="session", autouse=True)
+def patience(build_dir):
+    """With sanitizers, programs get five times the time that a test gives them, as in tests/CMakeLists.txt."""
+    cache = build_dir / "CMakeCache.txt"
+    if not cache.exists() or not re.search(r"^LAMPYRIS_SANITIZE:\w+=.", cache.read_text(), flags=re.MULTILINE):
+        yield
+        return
+    communicate = subprocess.Popen.communicate  # subprocess.run waits here, too
+
+    def wait_longer(process, input=None, timeout=None):
+        return communicate(process, input, timeout and 5 * timeout)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(subprocess.Popen, "communicate", wait_longer)
+        yield
 
 
 @pytest.fixture(scope="session")
