@@ -271,11 +271,23 @@ def test_passes_and_spp(program, scene, tmp_path):
         assert stats_of(file)["passes"] == passes
 
 
+def wait_until_caught(process, signal_number):
+    """Until the program catches the signal: while it starts, it would end by it."""
+    deadline = time.monotonic() + 60
+    caught = 0
+    while not caught >> (signal_number - 1) & 1:
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+        with open(f"/proc/{process.pid}/status") as status:
+            caught = next(int(line.split()[1], 16) for line in status if line.startswith("SigCgt:"))
+
+
 @pytest.mark.parametrize("signal_number", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupt_writes_what_is_done(program, scene, tmp_path, signal_number):
     image, file = tmp_path / "o.pfm", tmp_path / "stats.json"
     arguments = command(program, scene, "-o", image, "--stats", file, "--time", "10min", "--resolution", "64x48")
     with subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        wait_until_caught(process, signal_number)
         time.sleep(2.0)
         process.send_signal(signal_number)
         output, errors = process.communicate(timeout=60)
