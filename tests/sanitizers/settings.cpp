@@ -1,19 +1,21 @@
 // What programs with sanitizers link.
 #include <dlfcn.h>
 
-// A finding ends the program: no test passes in spite of one. UBSAN_OPTIONS=halt_on_error=0 goes on, to see them all.
-extern "C" const char* __ubsan_default_options() {  // NOLINT(bugprone-reserved-identifier): the runtime's name
-    return "halt_on_error=1:print_stacktrace=1";
-}
+extern "C" {
+// NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming): the runtimes' names
 
-// NOLINTBEGIN(bugprone-reserved-identifier): the runtime's names
-extern "C" const char* __lsan_default_options() { return "print_suppressions=0"; }
+// A finding ends the program: no test passes in spite of one. UBSAN_OPTIONS=halt_on_error=0 goes on, to see them all.
+const char* __ubsan_default_options() { return "halt_on_error=1:print_stacktrace=1"; }
+
+const char* __lsan_default_options() { return "print_suppressions=0"; }
 
 // Leaks that are not ours:
 // - Khronos' validation layer (1.3.239) leaves records of shaders and pipelines that hold each other. All are indirect
-//   leaks, and it tells no object that we would not have destroyed, as it does for one.
-extern "C" const char* __lsan_default_suppressions() { return "leak:libVkLayer_khronos_validation.so\n"; }
-// NOLINTEND(bugprone-reserved-identifier)
+//   leaks, and it tells of no object that is left when a device is destroyed.
+const char* __lsan_default_suppressions() { return "leak:libVkLayer_khronos_validation.so\n"; }
+
+// NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)
+}
 
 // A library that is loaded stays loaded. What a Vulkan driver holds in its variables until the process ends (Mesa's
 // lavapipe does) would be a leak to LeakSanitizer, and one without a stack, once the Vulkan loader has unloaded the driver
