@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -33,6 +34,11 @@ bool parse_number(std::string_view text, T& value) {
     return code == std::errc() && end == text.data() + text.size();
 }
 
+// The number of a choice's name; the number of names where it is none of them.
+size_t index_of(const ParameterSpec& spec, std::string_view name) {
+    return size_t(std::find(spec.choices.begin(), spec.choices.end(), name) - spec.choices.begin());
+}
+
 void store(void* target, const ParameterField& field, double value) {
     char* place = static_cast<char*>(target) + field.offset;
     const auto write = [&](auto number) { std::memcpy(place, &number, sizeof number); };
@@ -56,6 +62,18 @@ ParameterSpec boolean(std::string name, bool default_value, std::string doc) {
 }
 ParameterSpec text(std::string name, std::string default_value, std::string doc) {
     return make_spec(std::move(name), ParameterType::kString, 0.0, std::move(default_value), std::move(doc));
+}
+ParameterSpec choice(std::string name, size_t default_index, std::string_view doc) {
+    std::vector<std::string> names(1);
+    size_t at = 1;
+    for (; doc.at(at) != '}'; ++at) {
+        if (doc[at] == '|') {
+            names.emplace_back();
+        } else {
+            names.back() += doc[at];
+        }
+    }
+    return text(std::move(name), names.at(default_index), std::string(doc.substr(at + 2))).one_of(names);
 }
 ParameterSpec value(std::string name, ParameterType type, std::string absent, std::string doc) {
     return make_spec(std::move(name), type, 0.0, std::move(absent), std::move(doc));
@@ -202,13 +220,20 @@ ParameterSpecs specs_of(const ParameterFields& fields) {
 }
 
 void set_defaults(void* target, const ParameterFields& fields) {
-    for (const ParameterField& field : fields) store(target, field, field.spec.number);
+    for (const ParameterField& field : fields)
+        store(target, field,
+              field.spec.choices.empty() ? field.spec.number : double(index_of(field.spec, field.spec.text)));
 }
 
 void read_parameters(void* target, const ParameterFields& fields, const ParameterList& list, Diagnostics& diagnostics) {
     for (const ParameterField& field : fields) {
         const ParameterSpec& spec = field.spec;
         if (!list.has(spec.name)) continue;
+        if (!spec.choices.empty()) {
+            store(target, field,
+                  double(index_of(spec, list.get_choice(spec.name, spec.text, spec.choices, diagnostics))));
+            continue;
+        }
         const double value = field.type == ParameterField::Type::kFloat
                                  ? double(list.get_float(spec.name, float(spec.number), diagnostics))
                                  : double(list.get_int(spec.name, int32_t(spec.number), diagnostics));
@@ -230,6 +255,14 @@ void set_parameter(void* target, const ParameterFields& fields, std::string_view
         const std::vector<std::string> names = spec_names(specs_of(fields));
         throw InputError(fmt::format("error: {} has no parameter \"{}\"{}; it has: {}", of_what, key,
                                      did_you_mean(key, names), names.empty() ? "none" : list_of(names)));
+    }
+    if (!field->spec.choices.empty()) {
+        const size_t index = index_of(field->spec, value);
+        if (index == field->spec.choices.size())
+            throw InputError(fmt::format("error: {}: \"{}\" is {}{}; valid are {}", of_what, key, shown(value),
+                                         did_you_mean(value, field->spec.choices), list_of(field->spec.choices)));
+        store(target, *field, double(index));
+        return;
     }
     double number = 0.0;
     bool good;
@@ -256,6 +289,12 @@ std::vector<std::pair<std::string, std::string>> show_parameters(const void* sou
             std::memcpy(&number, place, sizeof number);
             return fmt::format("{}", number);
         };
+        if (!field.spec.choices.empty()) {
+            uint32_t index;
+            std::memcpy(&index, place, sizeof index);
+            shown.emplace_back(field.spec.name, field.spec.choices.at(index));
+            continue;
+        }
         shown.emplace_back(field.spec.name, field.type == ParameterField::Type::kInt    ? read(int32_t{})
                                             : field.type == ParameterField::Type::kUint ? read(uint32_t{})
                                                                                         : read(float{}));

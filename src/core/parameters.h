@@ -78,6 +78,8 @@ ParameterSpec real(std::string name, double default_value, std::string doc);
 ParameterSpec integer(std::string name, int default_value, std::string doc);
 ParameterSpec boolean(std::string name, bool default_value, std::string doc);
 ParameterSpec text(std::string name, std::string default_value, std::string doc);
+// One of the names in braces with which `doc` begins: "{race|priority} who stays".
+ParameterSpec choice(std::string name, size_t default_index, std::string_view doc);
 // Tuples, spectra, textures and whole arrays have no default value here: `absent` says what it means to leave it out.
 ParameterSpec value(std::string name, ParameterType type, std::string absent, std::string doc);
 ParameterSpec values(std::string name, ParameterType type, std::string absent, std::string doc);
@@ -121,7 +123,8 @@ class ParameterReader {
 
 // ---- Parameters of integrators and photon maps: members of a plain struct --------------------------------------------
 
-// One member of a struct declared with PARAMS: an int, uint or float.
+// One member of a struct declared with PARAMS: an int, uint or float. A uint whose documentation begins with "{a|b|c} " is a choice
+// among these names, and its value the number of one, from 0.
 struct ParameterField {
     ParameterSpec spec;
     size_t offset = 0;
@@ -132,9 +135,10 @@ using ParameterFields = std::vector<ParameterField>;
 template <typename T>
 requires std::same_as<T, int> || std::same_as<T, unsigned> || std::same_as<T, float> ParameterField
 parameter_field(const char* name, size_t offset, double default_value, double low, double high, const char* doc) {
+    using Type = ParameterField::Type;
+    if (doc[0] == '{') return {choice(name, size_t(default_value), doc), offset, Type::kUint};
     ParameterSpec spec =
         std::is_same_v<T, float> ? real(name, default_value, doc) : integer(name, int(default_value), doc);
-    using Type = ParameterField::Type;
     return {std::move(spec).between(low, high), offset,
             std::is_same_v<T, float> ? Type::kFloat
             : std::is_same_v<T, int> ? Type::kInt
@@ -146,7 +150,7 @@ parameter_field(const char* name, size_t offset, double default_value, double lo
 // The fields of a struct declared with PARAMS(S, LIST), as an expression.
 #define PARAMETER_FIELDS(S, LIST)                                           \
     [] {                                                                    \
-        using Struct = S;                                                   \
+        using Struct [[maybe_unused]] = S;                                  \
         return ::lampyris::ParameterFields{LIST(LAMPYRIS_PARAMETER_FIELD)}; \
     }()
 

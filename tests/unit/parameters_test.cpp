@@ -58,6 +58,25 @@ TEST(ParameterFields, WrongTextIsExplained) {
     EXPECT_NE(set("distance", "far").find("\"far\" is not a number"), std::string::npos);
 }
 
+#define CHOICE_PARAMS(P) P(unsigned, selection, 1, 0, 2, "{race|priority|flux} who stays")
+PARAMS(ChoiceParams, CHOICE_PARAMS)
+
+TEST(ParameterFields, ChoicesAreNamedAndKeptAsNumbers) {
+    const ParameterFields fields = PARAMETER_FIELDS(ChoiceParams, CHOICE_PARAMS);
+    EXPECT_EQ(fields[0].spec.choices, (std::vector<std::string>{"race", "priority", "flux"}));
+    EXPECT_EQ(fields[0].spec.default_text(), "priority");
+    EXPECT_EQ(fields[0].spec.doc, "who stays");
+    ChoiceParams params{};
+    set_defaults(&params, fields);
+    EXPECT_EQ(params.selection, 1u);
+    set_parameter(&params, fields, "selection", "flux", "photon-map \"probe\"");
+    EXPECT_EQ(params.selection, 2u);
+    EXPECT_EQ(show_parameters(&params, fields)[0].second, "flux");
+    const std::string message =
+        message_of([&] { set_parameter(&params, fields, "selection", "fluxx", "photon-map \"probe\""); });
+    EXPECT_NE(message.find("(did you mean \"flux\"?); valid are race, priority, flux"), std::string::npos) << message;
+}
+
 TEST(PluginChoice, NameAndSettings) {
     const PluginChoice choice = parse_plugin_choice("stochastic_hash:slots=2,load=0.5");
     EXPECT_EQ(choice.name, "stochastic_hash");
