@@ -24,9 +24,13 @@ if(TARGET lampyris_program)
 endif()
 install(EXPORT LampyrisTargets NAMESPACE Lampyris:: DESTINATION ${package_dir})
 install(DIRECTORY src/core DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lampyris FILES_MATCHING PATTERN *.h PATTERN *.glsl)
+# Photon maps and their consumers, for those of plugins to be built with.
+install(DIRECTORY src/accel src/integrators DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lampyris
+  FILES_MATCHING PATTERN *.gather.h PATTERN *.consumer.h PATTERN *.layout.h PATTERN *.params.h)
 install(FILES ${abi_header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lampyris/core)
+set(LAMPYRIS_KERNELS ${CMAKE_INSTALL_INCLUDEDIR}/lampyris)
 configure_package_config_file(cmake/LampyrisConfig.cmake.in ${PROJECT_BINARY_DIR}/LampyrisConfig.cmake
-  INSTALL_DESTINATION ${package_dir})
+  INSTALL_DESTINATION ${package_dir} PATH_VARS LAMPYRIS_KERNELS)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/LampyrisConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/LampyrisConfig.cmake ${PROJECT_BINARY_DIR}/LampyrisConfigVersion.cmake
   cmake/LampyrisKernels.cmake cmake/LampyrisPlugin.cmake cmake/cpu_kernel.cpp.in

@@ -51,12 +51,16 @@ struct DeviceStatistics {
         spirv_bytes;  // size of each kernel's SPIR-V, by its file's name; empty on CPU backends
 };
 
+// What not every device can do.
+enum class DeviceFeature { kInt64Atomics, kRayQuery };
+
 class Device {
  public:
     virtual ~Device() = default;
     virtual std::string backend() const = 0;      // "cpu", "cpu-bvh2", "vulkan"
     virtual std::string description() const = 0;  // processor or device, driver
     virtual unsigned threads() const = 0;         // 0 where it has no meaning
+    virtual bool offers(DeviceFeature feature) const = 0;
 
     // Throws MachineError where there is no memory for it.
     virtual BufferHandle create_buffer(size_t bytes, std::string_view name) = 0;
@@ -64,8 +68,9 @@ class Device {
     // Builds acceleration structures and uploads the scene. The scene must outlive the result.
     virtual DeviceSceneHandle upload(const Scene& scene) = 0;
 
-    // `file` is the kernel's path below its source root ("integrators/path/path.kernel.h"); code for effects outside
-    // `effects` may be left out. `trace` says whether the kernel traces rays or reads the scene (needs a DeviceScene to run).
+    // `file` is the kernel's path below its source root ("integrators/path/path.kernel.h"), or several joined by '+', which
+    // make one kernel in that order ("accel/common/collect.consumer.h+accel/linked_list/linked_list.gather.h"); code for effects
+    // outside `effects` may be left out. `trace` says whether the kernel traces rays or reads the scene (needs a DeviceScene to run).
     virtual KernelHandle compile(std::string_view file, uint32_t effects) = 0;
 
     // Runs the kernel for the indices [begin, begin + count), split as the device needs; `buffers[i]` is binding i of set 1.
@@ -76,6 +81,12 @@ class Device {
 
     virtual DeviceStatistics statistics() const = 0;
 };
+
+// Invocations of a kernel that handles BATCH items in each (core/kernel/prelude.h).
+constexpr uint32_t batch_count(uint32_t items) {
+    constexpr uint32_t kItems = 16 * 32;  // of BATCH times the neighbours on a GPU
+    return (items / kItems + (items % kItems != 0)) * 32;
+}
 
 struct DeviceOptions {
     std::string device;                           // number or part of the name; empty: the first

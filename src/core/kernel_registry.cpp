@@ -1,7 +1,10 @@
 #include "core/kernel_registry.h"
 
+#include "core/error.h"
+
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <map>
 #include <stdexcept>
@@ -44,6 +47,14 @@ std::vector<std::string> kernel_text_files() {
     return files;
 }
 
+std::vector<std::string_view> kernel_parts(std::string_view file) {
+    std::vector<std::string_view> parts;
+    for (size_t plus; (plus = file.find('+')) != std::string_view::npos; file.remove_prefix(plus + 1))
+        parts.push_back(file.substr(0, plus));
+    parts.push_back(file);
+    return parts;
+}
+
 CpuKernelFunction find_cpu_kernel(std::string_view file, CpuTracerKind tracer, uint32_t effects) {
     const Build* best = nullptr;
     const auto [begin, end] = builds().equal_range(file);
@@ -52,6 +63,12 @@ CpuKernelFunction find_cpu_kernel(std::string_view file, CpuTracerKind tracer, u
         if (build.tracer != tracer || (effects & ~build.effects) != 0) continue;
         if (!best || std::popcount(build.effects) < std::popcount(best->effects)) best = &build;
     }
+    const std::vector<std::string_view> parts = kernel_parts(file);
+    const bool known = std::all_of(parts.begin(), parts.end(), [](auto part) { return find_kernel_text(part); });
+    if (!best && parts.size() > 1 && known)
+        throw InputError(fmt::format(
+            "error: {} were not compiled together: they come from two plugins; build both in one (lampyris_add_plugin)",
+            list_of({parts.begin(), parts.end()})));
     if (!best) throw std::logic_error(fmt::format("no C++ build of kernel {} with effects {:#x}", file, effects));
     return best->run;
 }

@@ -47,7 +47,11 @@ struct KernelText {
 const std::string_view* find_kernel_text(std::string_view file);
 std::vector<std::string> kernel_text_files();
 
-// The C++ build with the fewest effects that has all of `effects`. Throws std::logic_error for an unknown kernel.
+// The files of a kernel that is made of several: "a+b" is a, then b.
+std::vector<std::string_view> kernel_parts(std::string_view file);
+
+// The C++ build with the fewest effects that has all of `effects`. Throws std::logic_error for an unknown kernel,
+// InputError for a pair of files of two plugins, which no build has put together.
 CpuKernelFunction find_cpu_kernel(std::string_view file, CpuTracerKind tracer, uint32_t effects);
 
 }  // namespace lampyris

@@ -110,6 +110,7 @@ class CpuDevice final : public Device {
     std::string backend() const override { return tracer_ == CpuTracerKind::embree ? "cpu" : "cpu-bvh2"; }
     std::string description() const override { return processor_name(); }
     unsigned threads() const override { return threads_; }
+    bool offers(DeviceFeature feature) const override { return feature == DeviceFeature::kInt64Atomics; }
 
     BufferHandle create_buffer(size_t bytes, std::string_view name) override {
         return std::make_shared<CpuBuffer>(bytes, name, meter_);

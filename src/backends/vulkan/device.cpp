@@ -58,6 +58,9 @@ class VulkanDevice final : public Device {
                            shader_options_.ray_query ? ", ray query" : "");
     }
     unsigned threads() const override { return 0; }
+    bool offers(DeviceFeature feature) const override {
+        return feature == DeviceFeature::kInt64Atomics ? context_->can.int64_atomics : shader_options_.ray_query;
+    }
 
     BufferHandle create_buffer(size_t bytes, std::string_view name) override {
         if (bytes > context_->can.max_storage_range) {

@@ -168,21 +168,32 @@ Spirv optimize(std::string_view kernel_file, const Spirv& spirv) {
 }  // namespace
 
 std::string shader_source(std::string_view kernel_file, const ShaderOptions& options) {
+    std::string includes;
+    bool int64 = false;
+    for (const std::string_view part : kernel_parts(kernel_file)) {
+        includes += fmt::format("#include \"{}\"\n", part);
+        const std::string_view* text = find_kernel_text(part);
+        int64 = int64 || (text && text->find("uint64") != std::string_view::npos);
+    }
     return fmt::format(
         "#version 460\n"
         "#extension GL_GOOGLE_include_directive : require\n"
-        "{}"
+        "{}{}"
         "#define KERNEL_TRACER_{} 1\n"
         "#define KERNEL_LOCAL_SIZE {}\n"
         "const uint kEffects = {:#x}u;\n"
-        "#include \"{}\"\n"
+        "{}"
         "#include \"core/kernel/entry.glsl\"\n",
+        int64 ? "#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require\n"
+                "#extension GL_EXT_shader_atomic_int64 : require\n"
+              : "",
         options.ray_query ? "#extension GL_EXT_ray_query : require\n" : "", options.ray_query ? "ray_query" : "bvh2",
-        options.local_size, options.effects, kernel_file);
+        options.local_size, options.effects, includes);
 }
 
 CompiledShader compile_shader(std::string_view kernel_file, const ShaderOptions& options, const ShaderCache& cache) {
-    if (!find_kernel_text(kernel_file)) throw std::logic_error(fmt::format("there is no kernel {}", kernel_file));
+    for (const std::string_view part : kernel_parts(kernel_file))
+        if (!find_kernel_text(part)) throw std::logic_error(fmt::format("there is no kernel {}", part));
     const std::string source = shader_source(kernel_file, options);
     const ContentHash key = key_of(source, options);
     if (auto found = cache.find(key)) return {std::move(*found), true};

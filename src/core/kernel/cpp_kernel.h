@@ -50,11 +50,37 @@ inline vec3 abs(vec3 v) { return vec3(abs(v.x), abs(v.y), abs(v.z)); }
 inline vec4 abs(vec4 v) { return vec4(abs(v.x), abs(v.y), abs(v.z), abs(v.w)); }
 inline bool isnan(float x) { return x != x; }
 inline bool isinf(float x) { return abs(x) > 3.4028235e38f; }
-inline void atomic_add_u32(uint* place, uint value) {
-    std::atomic_ref<uint>(*place).fetch_add(value, std::memory_order_relaxed);
+// High word of the product.
+inline uint mul_high(uint a, uint b) { return uint(uint64_t(a) * b >> 32); }
+
+using uint64 = uint64_t;
+template <typename T>
+T atomic_add(T* place, T value) {
+    return std::atomic_ref<T>(*place).fetch_add(value, std::memory_order_relaxed);
 }
-inline void atomic_or_u32(uint* place, uint value) {
-    std::atomic_ref<uint>(*place).fetch_or(value, std::memory_order_relaxed);
+template <typename T>
+T atomic_max(T* place, T value) {
+    std::atomic_ref<T> word(*place);
+    T old = word.load(std::memory_order_relaxed);
+    while (old < value && !word.compare_exchange_weak(old, value, std::memory_order_relaxed)) {}
+    return old;
+}
+inline uint atomic_add_u32(uint* place, uint value) { return atomic_add<uint>(place, value); }
+inline uint64 atomic_add_u64(uint64* place, uint64 value) { return atomic_add<uint64>(place, value); }
+inline uint atomic_max_u32(uint* place, uint value) { return atomic_max<uint>(place, value); }
+inline uint64 atomic_max_u64(uint64* place, uint64 value) { return atomic_max<uint64>(place, value); }
+inline uint atomic_or_u32(uint* place, uint value) {
+    return std::atomic_ref<uint>(*place).fetch_or(value, std::memory_order_relaxed);
+}
+inline uint atomic_exchange_u32(uint* place, uint value) {
+    return std::atomic_ref<uint>(*place).exchange(value, std::memory_order_relaxed);
+}
+inline uint atomic_compare_swap_u32(uint* place, uint expected, uint value) {
+    std::atomic_ref<uint>(*place).compare_exchange_strong(expected, value, std::memory_order_relaxed);
+    return expected;
+}
+inline void atomic_store_u32(uint* place, uint value) {
+    std::atomic_ref<uint>(*place).store(value, std::memory_order_relaxed);
 }
 inline void report_unfinished(uint* flag) {
     if (flag) atomic_or_u32(flag, 1u);

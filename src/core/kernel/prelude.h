@@ -24,8 +24,18 @@
 #define HAS(effect) ((kEffects & (effect)) != 0u)
 // The function that runs once per index; one per kernel file.
 #define KERNEL(name) inline void kernel_main(uint index)
+// Atomics return the old value. ATOMIC_STORE_U32 is for words that several invocations race for, in which any of them may win.
 #define ATOMIC_ADD_U32(place, value) atomic_add_u32(&(place), value)
 #define ATOMIC_OR_U32(place, value) atomic_or_u32(&(place), value)
+#define ATOMIC_MAX_U32(place, value) atomic_max_u32(&(place), value)
+#define ATOMIC_EXCHANGE_U32(place, value) atomic_exchange_u32(&(place), value)
+#define ATOMIC_COMPARE_SWAP_U32(place, expected, value) atomic_compare_swap_u32(&(place), expected, value)
+#define ATOMIC_STORE_U32(place, value) atomic_store_u32(&(place), value)
+// On 64 bits: a device may lack them (DeviceFeature::kInt64Atomics).
+#define ATOMIC_ADD_U64(place, value) atomic_add_u64(&(place), value)
+#define ATOMIC_MAX_U64(place, value) atomic_max_u64(&(place), value)
+// Says that a place will be read or written soon; a GPU hides the latency by itself.
+#define PREFETCH(place) __builtin_prefetch(&(place))
 // A kernel says that it could not do all of its work (a loop's bound or a stack was not enough, or the driver ended a loop
 // early: Mesa 22 does after 65,535 iterations). Device::run then throws; an image is never silently dark.
 #define REPORT_UNFINISHED() report_unfinished(unfinished_)
@@ -45,8 +55,33 @@
 #define KERNEL(name) void kernel_main(uint index)
 #define ATOMIC_ADD_U32(place, value) atomicAdd(place, value)
 #define ATOMIC_OR_U32(place, value) atomicOr(place, value)
+#define ATOMIC_MAX_U32(place, value) atomicMax(place, value)
+#define ATOMIC_EXCHANGE_U32(place, value) atomicExchange(place, value)
+#define ATOMIC_COMPARE_SWAP_U32(place, expected, value) atomicCompSwap(place, expected, value)
+#define ATOMIC_STORE_U32(place, value) place = value
+#define uint64 uint64_t
+#define ATOMIC_ADD_U64(place, value) atomicAdd(place, value)
+#define ATOMIC_MAX_U64(place, value) atomicMax(place, value)
+#define PREFETCH(place)
 layout(std430, set = 0, binding = 17) restrict buffer UnfinishedBlock { uint unfinished_[]; };
 #define REPORT_UNFINISHED() atomicOr(unfinished_[0], 1u)
+uint mul_high(uint a, uint b) {
+    uint high;
+    uint low;
+    umulExtended(a, b, high, low);
+    return high;
+}
+#endif
+
+// Kernels that touch memory at random handle BATCH items an invocation, so that the CPU can ask for all of their places
+// before it uses the first. The k-th item of an invocation lies where each kind of machine likes to read: next to the one before on a
+// CPU, next to the neighbouring invocation's on a GPU. The host runs batch_count(n) invocations (core/device.h); an item may
+// lie beyond the last one.
+CONST uint BATCH = 16u;
+#ifdef __cplusplus
+FN uint batch_item(uint index, uint k) { return index * BATCH + k; }
+#else
+FN uint batch_item(uint index, uint k) { return (index / 32u) * (32u * BATCH) + k * 32u + index % 32u; }
 #endif
 
 #endif

@@ -2,7 +2,16 @@
 #ifndef LAMPYRIS_KERNEL_TRACE
 #define LAMPYRIS_KERNEL_TRACE
 
-#ifdef KERNEL_TRACER_embree
+#ifdef KERNEL_TRACER_any  // a kernel that reads the scene but traces no rays
+FN bool trace_closest(vec3 origin, vec3 direction, float t_max, OUT(Hit) hit) {
+    REPORT_UNFINISHED();
+    return false;
+}
+FN bool trace_occluded(vec3 origin, vec3 direction, float t_max) {
+    REPORT_UNFINISHED();
+    return false;
+}
+#elif defined(KERNEL_TRACER_embree)
 // Hits with 0 < t < t_max. The direction need not be unit length.
 FN bool trace_closest(vec3 origin, vec3 direction, float t_max, OUT(Hit) hit) {
     TraceHit found;
