@@ -16,5 +16,6 @@ using glm::vec4;
 #define CONST inline constexpr
 #include "core/kernel/effects.h"
 #include "core/kernel/layout.h"
+#include "core/kernel/photon_layout.h"
 #undef CONST
 }  // namespace lampyris::kernel

@@ -1,0 +1,33 @@
+// Adds up what a query finds: for tests and the benchmark. The checksum of keys does not depend on their order.
+#include "core/kernel/gather.h"
+#include "accel/collect/collect.layout.h"
+
+BUFFER_RW(16, CollectResult, results)
+
+struct Gathered {
+    vec4 sum;
+    uint found;
+    uint checksum;
+};
+
+FN Gathered gather_begin(uint query) {
+    Gathered g;
+    g.sum = vec4(0.0f);
+    g.found = 0u;
+    g.checksum = 0u;
+    return g;
+}
+
+FN void gather_add(INOUT(Gathered) g, uint query, IN(PhotonRecord) photon, float distance_squared, float weight) {
+    vec3 power = photon_power(photon) * weight;
+    g.sum += vec4(power.x, power.y, power.z, weight);
+    g.found += 1u;
+    g.checksum += hash32(photon.place.w);
+}
+
+FN void gather_end(IN(Gathered) g, uint query) {
+    CollectResult r;
+    r.sum = g.sum;
+    r.found = uvec4(g.found, g.checksum, 0u, 0u);
+    results[query] = r;
+}

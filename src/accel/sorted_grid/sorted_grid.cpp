@@ -1,0 +1,48 @@
+#include "accel/sorted_grid/sorted_grid.params.h"
+#include "core/photon_grid.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace lampyris {
+namespace {
+
+class SortedGrid : public PhotonMap {
+ public:
+    SortedGridParams params;
+    PhotonMapCapabilities capabilities() const override { return {.exact = true, .fixed_order = true}; }
+
+ protected:
+    static constexpr const char* kCount = "accel/sorted_grid/sorted_grid_count.kernel.h";
+    static constexpr const char* kScatter = "accel/sorted_grid/sorted_grid_scatter.kernel.h";
+    static constexpr const char* kOrder = "accel/sorted_grid/sorted_grid_order.kernel.h";
+    std::vector<std::string> kernels() const override { return {kCount, kScatter, kOrder}; }
+
+    void construct(const PhotonSet& photons) override {
+        kernel::PhotonGrid grid = make_grid(photons, params.cell_size);
+        const double wanted = std::clamp(double(photons.count) * double(params.table_size), 1.0, double(1u << 30));
+        const uint32_t entries = std::bit_ceil(uint32_t(wanted));
+        grid.sizes.y = entries;
+        const BufferHandle record = upload("grid", grid);
+        const BufferHandle starts = keep("starts", (size_t(entries) + 1) * 4);
+        const BufferHandle ranks = keep("ranks", size_t(photons.count) * 8);
+        const BufferHandle order = keep("order", size_t(photons.count) * 8);
+        const BufferHandle places = keep("places", size_t(photons.count) * 16);
+        const BufferHandle fluxes = keep("fluxes", size_t(photons.count) * 16);
+        const uint32_t batches = batch_count(photons.count);
+        clear(starts, (size_t(entries) + 1) * 4);
+        run(kCount, {record, photons.photons, starts, ranks}, batches);
+        scan(starts, entries + 1);
+        run(kScatter, {record, photons.photons, starts, ranks, order}, batches);
+        run(kOrder, {record, photons.photons, starts, places, fluxes, order}, batch_count(entries));
+    }
+    std::vector<BufferHandle> gather_buffers() const override {
+        return {kept("grid"), kept("starts"), kept("places"), kept("fluxes")};
+    }
+};
+
+REGISTER_PHOTON_MAP(SortedGrid, SORTED_GRID_PARAMS, "sorted_grid",
+                    "A hash grid whose photons are sorted by cell: count, scan, scatter.")
+
+}  // namespace
+}  // namespace lampyris

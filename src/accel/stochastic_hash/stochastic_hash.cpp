@@ -1,0 +1,76 @@
+#include "core/photon_grid.h"
+#include "accel/stochastic_hash/stochastic_hash.params.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace lampyris {
+namespace {
+
+enum Selection : uint32_t { kRace, kPriority, kFlux };
+
+struct HashRecord {  // StochasticHash of stochastic_hash.layout.h
+    kernel::PhotonGrid grid;
+    glm::uvec4 options;
+    glm::vec4 flux_scale;
+};
+
+class StochasticHash : public PhotonMap {
+ public:
+    StochasticHashParams params;
+    PhotonMapCapabilities capabilities() const override {
+        return {
+            .stochastic = true, .fixed_order = params.selection != kRace, .int64_atomics = params.selection != kRace};
+    }
+    std::optional<BucketLoad> bucket_load() const override {
+        if (params.selection == kFlux || buckets_ == 0) return std::nullopt;  // its counters hold weights
+        std::vector<uint64_t> table(size_t(buckets_) * (params.slots + 1));
+        kept("table")->download(table.data(), table.size() * 8);
+        BucketLoad load;
+        uint64_t used = 0, sum = 0;
+        for (size_t i = 0; i < table.size(); i += params.slots + 1) {
+            used += table[i] != 0;
+            sum += table[i];
+            load.max = std::max(load.max, uint32_t(table[i]));
+        }
+        load.mean = used ? double(sum) / double(used) : 0.0;
+        return load;
+    }
+
+ protected:
+    std::string kernel_file() const {
+        static constexpr const char* kNames[] = {"race", "priority", "flux"};
+        return fmt::format("accel/stochastic_hash/stochastic_hash_{}.kernel.h", kNames[params.selection]);
+    }
+    std::vector<std::string> kernels() const override { return {kernel_file()}; }
+    void check() const override {
+        if (params.slots > 1 && params.selection != kPriority)
+            throw InputError("error: photon-map \"stochastic_hash\": more than one slot needs selection=priority");
+    }
+
+    void construct(const PhotonSet& photons) override {
+        HashRecord record{make_grid(photons, params.cell_size), {params.selection, 0, 0, 0}, {}};
+        const double wanted = std::clamp(double(photons.count) * double(params.table_size), 1.0, double(1u << 30));
+        buckets_ = uint32_t(wanted);
+        record.grid.sizes = {photons.count, buckets_, params.slots, record.grid.resolution.w * 0x9e3779b9u + 1u};
+        // 1024 for a photon of mean power: weights are whole, and 2^22 times the mean is as bright as a photon gets.
+        if (photons.mean_power > 0) record.flux_scale.x = 1024.0f / (3.0f * photons.mean_power);
+        const size_t bytes = size_t(buckets_) * (params.slots + 1) * 8;
+        const BufferHandle table = keep("table", bytes), arguments = upload("hash", record);
+        clear(table, bytes);
+        run(kernel_file(), {arguments, photons.photons, table}, batch_count(photons.count));
+    }
+    std::vector<BufferHandle> gather_buffers() const override {
+        return {kept("hash"), kept("table"), photons_.photons};
+    }
+
+ private:
+    uint32_t buckets_ = 0;
+};
+
+REGISTER_PHOTON_MAP(StochasticHash, STOCHASTIC_HASH_PARAMS, "stochastic_hash",
+                    "A hash table that keeps one photon a bucket, which stands for all that fell into it.")
+
+}  // namespace
+}  // namespace lampyris

@@ -1,0 +1,18 @@
+// What a structure's gather kernel and its consumer share: the queries.
+//
+// A gather kernel is made of two files, in this order: a consumer (NAME.consumer.h), which says what becomes of a photon that a
+// query found, and a structure (NAME.gather.h), which finds them and has the KERNEL. The consumer defines
+//     struct Gathered { ... };                                     what a query adds up, in registers
+//     FN Gathered gather_begin(uint query)
+//     FN void gather_add(INOUT(Gathered) g, uint query, IN(PhotonRecord) photon, float distance_squared, float weight)
+//     FN void gather_end(IN(Gathered) g, uint query)               called for every query with a radius >= 0
+// and traces no rays. A photon stands for `weight` photons, itself among them; 1 where the structure is exact. Bindings 0 to 15 are the
+// structure's, 16 and up the consumer's.
+#ifndef LAMPYRIS_KERNEL_GATHER
+#define LAMPYRIS_KERNEL_GATHER
+
+#include "core/kernel/photon.h"
+
+BUFFER_RO(0, vec4, queries)  // position, radius; a negative radius asks for nothing
+
+#endif

@@ -1,0 +1,13 @@
+// Prefix sums in three steps: the sums of blocks (scan_sum), their own prefix sums, and each block's from there (scan_write).
+#ifndef LAMPYRIS_KERNEL_SCAN
+#define LAMPYRIS_KERNEL_SCAN
+
+#include "core/kernel/prelude.h"
+
+CONST uint SCAN_BLOCK = 1024u;
+
+BUFFER_RO(0, uvec4, arguments)  // x: number of values, y: number of blocks
+BUFFER_RW(1, uint, values)
+BUFFER_RW(2, uint, sums)
+
+#endif

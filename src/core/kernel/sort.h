@@ -1,0 +1,47 @@
+// Sorts a range of (key, value) pairs in place, by one invocation: insertion where it is short, n log n where it is not. The pairs are
+// the kernel's own: BUFFER_RW(..., uvec2, order), declared before this.
+#ifndef LAMPYRIS_KERNEL_SORT
+#define LAMPYRIS_KERNEL_SORT
+
+#include "core/kernel/prelude.h"
+
+// Heap sort (Williams 1964): no memory, no recursion. `root` sinks into the heap of the first `count` pairs from `begin`.
+FN void sort_sink(uint begin, uint root, uint count) {
+    uvec2 pair = order[begin + root];
+    uint hole = root;
+    // One level of the heap a step: the bound is never met, unless the driver ends the loop early.
+    uint step = 0u;
+    for (; step < 32u && 2u * hole + 1u < count; ++step) {
+        uint child = 2u * hole + 1u;
+        if (child + 1u < count && order[begin + child].x < order[begin + child + 1u].x) child += 1u;
+        if (order[begin + child].x <= pair.x) break;
+        order[begin + hole] = order[begin + child];
+        hole = child;
+    }
+    order[begin + hole] = pair;
+}
+
+FN void sort_order(uint begin, uint end) {
+    uint count = end - begin;
+    if (count > 32u) {
+        uint i = count / 2u;
+        for (; i > 0u; --i) sort_sink(begin, i - 1u, count);
+        uint last = count - 1u;
+        for (; last > 0u; --last) {
+            uvec2 largest = order[begin];
+            order[begin] = order[begin + last];
+            order[begin + last] = largest;
+            sort_sink(begin, 0u, last);
+        }
+        if (i > 0u || last > 0u) REPORT_UNFINISHED();
+        return;
+    }
+    for (uint i = begin + 1u; i < end; ++i) {
+        uvec2 pair = order[i];
+        uint hole = i;
+        for (; hole > begin && order[hole - 1u].x > pair.x; --hole) order[hole] = order[hole - 1u];
+        order[hole] = pair;
+    }
+}
+
+#endif

@@ -1,0 +1,159 @@
+#include "core/photon_map.h"
+
+#define KERNEL_TRACER_embree 1
+#include "core/kernel/cpp_kernel.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+namespace lampyris {
+namespace kernel {
+namespace {
+
+struct PhotonCode {
+#include "core/kernel/photon.h"
+};
+
+}  // namespace
+}  // namespace kernel
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+constexpr const char* kClear = "core/kernel/clear.kernel.h";
+constexpr const char* kScanSum = "core/kernel/scan_sum.kernel.h";
+constexpr const char* kScanWrite = "core/kernel/scan_write.kernel.h";
+
+// Passes differ in their number of photons: room for a few more saves an allocation. A multiple of 16, for clear().
+size_t with_room(size_t bytes) { return (bytes + bytes / 8 + 63) / 16 * 16; }
+
+constexpr uint32_t kScanBlock = 1024;  // SCAN_BLOCK of core/kernel/scan.h
+
+}  // namespace
+
+kernel::PhotonRecord make_photon(glm::vec3 position, glm::vec3 direction, glm::vec3 power, uint32_t key) {
+    return kernel::PhotonCode().photon_pack(position, direction, power, key);
+}
+glm::vec3 direction_of(const kernel::PhotonRecord& photon) { return kernel::PhotonCode().photon_direction(photon); }
+
+Registry<PhotonMapFactory>& photon_maps() {
+    static Registry<PhotonMapFactory> registry(
+        "photon-map", "How photons near a point are found: the structure behind progressive photon mapping.");
+    return registry;
+}
+
+PhotonMapRegistration::PhotonMapRegistration(const char* name, const char* summary, PhotonMapFactory factory) {
+    ParameterSpecs specs = specs_of(factory.fields);
+    photon_maps().add({name, summary, std::move(specs)}, std::move(factory));
+}
+
+std::unique_ptr<PhotonMap> create_photon_map(std::string_view choice) {
+    const PluginChoice wanted = parse_plugin_choice(choice);
+    const PhotonMapFactory& factory = photon_maps().require(wanted.name);
+    std::unique_ptr<PhotonMap> map = factory.create();
+    set_defaults(map->parameters(), factory.fields);
+    for (const auto& [key, value] : wanted.settings)
+        set_parameter(map->parameters(), factory.fields, key, value, fmt::format("photon-map \"{}\"", wanted.name));
+    return map;
+}
+
+std::vector<std::pair<std::string, std::string>> show_photon_map(std::string_view name, PhotonMap& map) {
+    return show_parameters(map.parameters(), photon_maps().require(name).fields);
+}
+
+void PhotonMap::open(Device& device) {
+    check();
+    device_ = &device;
+    if (capabilities().int64_atomics && !device.offers(DeviceFeature::kInt64Atomics))
+        throw MachineError(fmt::format("error: photon map {} needs 64-bit atomics, which {} does not offer", name(),
+                                       device.description()));
+    for (const char* file : {kClear, kScanSum, kScanWrite}) compiled(file, 0);
+    for (const std::string& file : kernels()) compiled(file, 0);
+}
+
+void PhotonMap::prepare(const PhotonConsumer& consumer) {
+    compiled(fmt::format("{}+{}{}.gather.h", consumer.file, folder(), name()), consumer.effects);
+}
+
+void PhotonMap::build(const PhotonSet& photons) {
+    const auto start = Clock::now();
+    const double kernels = kernel_seconds();
+    photons_ = photons;
+    construct(photons);
+    statistics_.construction_s += seconds_since(start);
+    statistics_.construction_kernel_s += kernel_seconds() - kernels;
+}
+
+void PhotonMap::gather(const PhotonConsumer& consumer, const BufferHandle& queries, uint32_t first, uint32_t count) {
+    const Kernel& kernel = compiled(fmt::format("{}+{}{}.gather.h", consumer.file, folder(), name()), consumer.effects);
+    const auto start = Clock::now();
+    const double kernels = kernel_seconds();
+    std::vector<BufferHandle> buffers{queries};
+    for (const BufferHandle& buffer : gather_buffers()) buffers.push_back(buffer);
+    buffers.resize(16);
+    buffers.insert(buffers.end(), consumer.buffers.begin(), consumer.buffers.end());
+    run_gather(kernel, consumer, buffers, first, count);
+    statistics_.gathering_s += seconds_since(start);
+    statistics_.gathering_kernel_s += kernel_seconds() - kernels;
+}
+
+void PhotonMap::run_gather(const Kernel& kernel, const PhotonConsumer& consumer, std::span<const BufferHandle> buffers,
+                           uint32_t first, uint32_t count) {
+    device().run(kernel, consumer.scene, buffers, first, count);
+}
+
+size_t PhotonMap::memory_bytes() const {
+    size_t bytes = 0;
+    for (const auto& [name, buffer] : buffers_) bytes += buffer->size();
+    return bytes;
+}
+
+void PhotonMap::run(const std::string& file, std::initializer_list<BufferHandle> buffers, uint32_t count) {
+    const std::vector<BufferHandle> list(buffers);
+    device().run(compiled(file, 0), nullptr, list, 0, count);
+}
+
+const BufferHandle& PhotonMap::keep(const std::string& name, size_t bytes) {
+    BufferHandle& buffer = buffers_[name];
+    if (!buffer || buffer->size() < bytes) {
+        buffer.reset();  // before the larger one is made
+        buffer = device().create_buffer(with_room(bytes), fmt::format("photon map: {}", name));
+    }
+    return buffer;
+}
+
+void PhotonMap::clear(const BufferHandle& buffer, size_t bytes) {
+    const uint32_t words = uint32_t((bytes + 15) / 16);
+    run(kClear, {upload("clear", glm::uvec4(words, 0, 0, 0)), buffer}, batch_count(words));
+}
+
+void PhotonMap::scan(const BufferHandle& values, uint32_t count) { scan_level(values, count, 0); }
+
+void PhotonMap::scan_level(const BufferHandle& values, uint32_t count, int level) {
+    const uint32_t blocks = (count + kScanBlock - 1) / kScanBlock;
+    const std::string name = fmt::format("scan {}", level);
+    const BufferHandle sums = keep(name, size_t(blocks) * 4);
+    const BufferHandle arguments = upload(name + " arguments", glm::uvec4(count, blocks, 0, 0));
+    if (blocks > 1) {
+        run(kScanSum, {arguments, values, sums}, blocks);
+        scan_level(sums, blocks, level + 1);
+    }
+    run(kScanWrite, {arguments, values, sums}, blocks);
+}
+
+const Kernel& PhotonMap::compiled(const std::string& file, uint32_t effects) {
+    KernelHandle& kernel = kernels_[{file, effects}];
+    if (!kernel) kernel = device().compile(file, effects);
+    return *kernel;
+}
+
+double PhotonMap::kernel_seconds() const {
+    double sum = 0;
+    for (const auto& [file, seconds] : device().statistics().kernel_s) sum += seconds;
+    return sum;
+}
+
+}  // namespace lampyris

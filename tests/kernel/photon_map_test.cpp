@@ -1,0 +1,180 @@
+// Photon maps on every backend: exact ones find what brute force finds, and what may not depend on the machine does not.
+#include "core/photon_map.h"
+#include "support/device_run.h"
+#include "support/photon_sets.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <random>
+
+namespace lampyris {
+namespace {
+
+using namespace test;
+
+std::unique_ptr<PhotonMap> open_map(Device& device, const std::string& choice) {
+    auto map = create_photon_map(choice);
+    map->open(device);
+    return map;
+}
+
+struct Size {
+    uint32_t photons, queries;
+};
+// photon_map_long_test has the sizes of the specification.
+constexpr Size kSizes[] = {{3000, 20'000}, {60'000, 200}, {1, 50}};
+
+TEST(PhotonMap, ExactOnesFindWhatBruteForceFinds) {
+    const auto reference = create_device("cpu");
+    const auto brute = open_map(*reference, "brute_force");
+    struct Expected {
+        PhotonCase photon_case;
+        std::vector<CollectResult> results;
+    };
+    std::vector<Expected> cases;
+    for (const std::string& name : photon_case_names()) {
+        for (const Size& size : kSizes) {
+            Expected expected{make_photon_case(name, size.photons, size.queries), {}};
+            expected.results = collect(*reference, *brute, upload_case(*reference, expected.photon_case));
+            cases.push_back(std::move(expected));
+        }
+    }
+    std::vector<std::string> maps = exact_photon_maps();
+    maps.emplace_back("brute_force");
+    for (const std::string& backend : usable_backends()) {
+        const auto device = create_device(backend);
+        for (const std::string& choice : maps) {
+            if (choice == "brute_force" && backend == "cpu") continue;
+            const auto map = open_map(*device, choice);
+            for (const Expected& expected : cases) {
+                SCOPED_TRACE(backend + " " + choice + " " + expected.photon_case.name);
+                std::vector<CollectResult> found;
+                try {
+                    found = collect(*device, *map, upload_case(*device, expected.photon_case));
+                } catch (const MachineError& error) {
+                    // Mesa before 25 ends long loops, which must be told: thousands of photons in one place are such.
+                    ASSERT_NE(device->description().find("Mesa 22"), std::string::npos) << error.what();
+                    ASSERT_NE(std::string(error.what()).find("could not finish a loop"), std::string::npos);
+                    continue;
+                }
+                size_t wrong = 0;
+                for (size_t i = 0; i < found.size(); ++i) {
+                    if (found[i].found == expected.results[i].found) continue;
+                    if (wrong++ == 0)
+                        ADD_FAILURE() << "query " << i << " finds " << found[i].found.x << " of "
+                                      << expected.results[i].found.x;
+                }
+                EXPECT_EQ(wrong, 0u) << "of " << found.size();
+            }
+        }
+    }
+}
+
+// The same sums, to the bit, on any number of threads and any backend, and in whatever order photons were stored.
+TEST(PhotonMap, FixedOrderMeansTheSameSums) {
+    std::vector<std::string> choices;
+    for (const std::string& name : photon_maps().names())
+        if (create_photon_map(name)->capabilities().fixed_order) choices.push_back(name);
+    for (const char* other : {"stochastic_hash:slots=3,table_size=0.1"}) choices.emplace_back(other);
+    ASSERT_FALSE(choices.empty());
+    struct Machine {
+        std::string backend;
+        unsigned threads;
+    };
+    std::vector<Machine> machines{{"cpu", 1}, {"cpu", 2}, {"cpu", 7}};
+    for (const std::string& backend : usable_backends())
+        if (backend != "cpu") machines.push_back({backend, 0});
+    for (const char* name : {"random", "few_places", "planar"}) {
+        PhotonCase photon_case = make_photon_case(name, 50'000, 2000);
+        if (std::string(name) == "few_places") photon_case = make_photon_case(name, 5000, 2000);
+        for (const std::string& choice : choices) {
+            std::vector<CollectResult> first;
+            std::mt19937 random(3);
+            for (const Machine& machine : machines) {
+                SCOPED_TRACE(choice + " " + name + " " + machine.backend + " " + std::to_string(machine.threads));
+                DeviceOptions options;
+                options.threads = machine.threads;
+                const auto device = create_device(machine.backend, options);
+                const auto map = open_map(*device, choice);
+                const auto found = collect(*device, *map, upload_case(*device, photon_case));
+                if (first.empty()) first = found;
+                EXPECT_EQ(std::memcmp(first.data(), found.data(), found.size() * sizeof(found[0])), 0);
+                std::shuffle(photon_case.photons.begin(), photon_case.photons.end(), random);
+            }
+        }
+    }
+}
+
+TEST(PhotonMap, NoPhotonsAndNoQueriesAreNoError) {
+    for (const std::string& backend : usable_backends()) {
+        const auto device = create_device(backend);
+        for (const std::string& name : photon_maps().names()) {
+            SCOPED_TRACE(backend + " " + name);
+            const auto map = open_map(*device, name);
+            PhotonSet set = upload_case(*device, make_photon_case("random", 10, 10));
+            set.count = 0;
+            for (const CollectResult& result : collect(*device, *map, set)) EXPECT_EQ(result.found.x, 0u);
+            map->gather({kCollect, 0, nullptr, {set.queries}}, set.queries, 0, 0);
+        }
+    }
+}
+
+TEST(PhotonMap, MapsAreReusedFromPassToPass) {
+    const auto device = create_device("cpu");
+    for (const std::string& choice : exact_photon_maps()) {
+        SCOPED_TRACE(choice);
+        const auto map = open_map(*device, choice);
+        const auto fresh = open_map(*device, "brute_force");
+        size_t bytes = 0;
+        for (const uint32_t photons : {20'000u, 500u, 20'000u, 18'000u}) {
+            PhotonSet set = upload_case(*device, make_photon_case("random", photons, 300, photons));
+            set.pass = photons;
+            const auto found = collect(*device, *map, set), expected = collect(*device, *fresh, set);
+            for (size_t i = 0; i < found.size(); ++i) ASSERT_EQ(found[i].found, expected[i].found);
+            if (bytes == 0) bytes = map->memory_bytes();
+            EXPECT_LE(map->memory_bytes(), bytes + bytes / 8) << "memory grows from pass to pass";
+        }
+        const PhotonMapStatistics statistics = map->statistics();
+        EXPECT_GT(statistics.construction_s, 0);
+        EXPECT_GT(statistics.gathering_kernel_s, 0);
+        EXPECT_EQ(statistics.lost_photons, 0u);
+    }
+}
+
+TEST(PhotonMap, UnknownNamesAndParametersAreBadInput) {
+    EXPECT_THROW(create_photon_map("sorted_gird"), InputError);
+    EXPECT_THROW(create_photon_map("sorted_grid:cells=2"), InputError);
+    EXPECT_THROW(create_photon_map("stochastic_hash:selection=lottery"), InputError);
+    const auto device = create_device("cpu");
+    EXPECT_THROW(create_photon_map("stochastic_hash:selection=race,slots=2")->open(*device), InputError);
+    const auto map = create_photon_map("stochastic_hash:selection=flux");
+    EXPECT_EQ(show_photon_map("stochastic_hash", *map)[0], (std::pair<std::string, std::string>("selection", "flux")));
+}
+
+// The direction that comes back is off by less than photon.h says, and exact on the axes.
+TEST(PhotonMap, PackedDirectionsKeepTheirPromise) {
+    std::mt19937 random(1);
+    std::normal_distribution<float> normal;
+    double worst = 0;
+    for (int i = 0; i < 1'000'000; ++i) {
+        glm::dvec3 d(normal(random), normal(random), normal(random));
+        d = glm::normalize(d);
+        const glm::dvec3 back(direction_of(make_photon({}, glm::vec3(d), {}, 0)));
+        worst = std::max(worst, glm::length(glm::cross(d, back)));
+        ASSERT_GT(glm::dot(d, back), 0);
+    }
+    EXPECT_LT(worst, 7e-5);
+    EXPECT_GT(worst, 1e-5);
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const float sign : {-1.0f, 1.0f}) {
+            glm::vec3 d(0.0f);
+            d[axis] = sign;
+            EXPECT_EQ(direction_of(make_photon({}, d, {}, 0)), d);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace lampyris

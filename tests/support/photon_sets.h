@@ -1,0 +1,42 @@
+// Photons and queries for tests of photon maps, in every shape that breaks a structure.
+#pragma once
+
+#include "core/photon_map.h"
+
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace lampyris::test {
+
+struct CollectResult {  // of accel/collect/collect.layout.h
+    glm::vec4 sum;
+    glm::uvec4 found;
+};
+inline constexpr const char* kCollect = "accel/collect/collect.consumer.h";
+
+struct PhotonCase {
+    std::string name;
+    std::vector<kernel::PhotonRecord> photons;
+    std::vector<glm::vec4> queries;
+    glm::vec3 low, high;
+    float radius = 0;  // the largest
+};
+
+std::vector<std::string> photon_case_names();
+// Half of the queries lie where photons do, the rest near and about them; radii vary. Keys are a permutation of the indices.
+PhotonCase make_photon_case(const std::string& name, uint32_t photons, uint32_t queries, uint32_t seed = 1);
+
+// A case's photons and queries on a device.
+PhotonSet upload_case(Device& device, const PhotonCase& photon_case);
+
+// Builds and gathers on a device.
+std::vector<CollectResult> collect(Device& device, PhotonMap& map, const PhotonSet& set);
+
+// Names of maps, with parameters, that promise exactness: each in its default state and in those that tests ask for.
+std::vector<std::string> exact_photon_maps();
+
+}  // namespace lampyris::test
