@@ -1,0 +1,140 @@
+// lampyris bench photon-maps: what each photon-query structure costs, beside the memory traffic that none can avoid.
+#include "commands/command.h"
+#include "commands/photon_bench.h"
+#include "commands/render_options.h"
+#include "core/device.h"
+#include "core/error.h"
+#include "core/photon_map.h"
+#include "core/plugin.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <charconv>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace lampyris {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct BenchOptions {
+    std::vector<std::string> structures, backends{"cpu"}, points{"1e3", "1e4", "1e5", "1e6"}, plugins;
+    std::vector<std::string> distributions{"uniform"};
+    std::string json_file;
+    DeviceOptions device;
+    PhotonBenchSettings settings;
+    bool json = false;
+};
+
+// "1e6", "1000".
+uint32_t parse_count(const std::string& text) {
+    double value = 0;
+    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (code != std::errc() || end != text.data() + text.size() || !(value >= 1 && value <= 2e8))
+        throw InputError(fmt::format("error: --points {}: expected numbers from 1 to 2e8, as 1e3,1e6", text));
+    return uint32_t(value);
+}
+
+// Every structure but the one that nobody waits for.
+std::vector<std::string> all_structures() {
+    std::vector<std::string> names;
+    for (const std::string& name : photon_maps().names())
+        if (name != "brute_force") names.push_back(name);
+    return names;
+}
+
+Json to_json(const PhotonBenchRow& row) {
+    Json parameters = Json::object();
+    for (const auto& [key, value] : row.parameters) parameters[key] = value;
+    return {{"structure", row.structure},
+            {"parameters", parameters},
+            {"backend", row.backend},
+            {"points", row.points},
+            {"distribution", row.distribution},
+            {"construction_ns_per_point", row.construction_ns_per_point},
+            {"query_ns", row.query_ns},
+            {"bytes_per_point", row.bytes_per_point},
+            {"photons_found_mean", row.photons_found_mean}};
+}
+
+void print_row(const PhotonBenchRow& row) {
+    fmt::print("{:<8} {:<10} {:>10} {:<24} {:>10.2f} {:>10.0f} {:>10.1f} {:>10.2f}\n", row.backend, row.distribution,
+               row.points, row.structure, row.construction_ns_per_point, row.query_ns, row.bytes_per_point,
+               row.photons_found_mean);
+}
+
+int bench(const BenchOptions& options) {
+    check_registrations();
+    load_plugins(options.plugins);
+    const std::vector<std::string> structures = options.structures.empty() ? all_structures() : options.structures;
+    for (const std::string& structure : structures) create_photon_map(structure);  // errors before the work
+    std::vector<uint32_t> counts;
+    for (const std::string& text : options.points) counts.push_back(parse_count(text));
+    Json json{{"schema", "lampyris.photon-bench/1"}};
+    Json rows = Json::array(), floors = Json::array();
+    for (const std::string& backend : options.backends) {
+        const std::unique_ptr<Device> device = create_device(backend, options.device);
+        for (const uint32_t count : counts) {
+            const PhotonBenchFloor floor = measure_floor(*device, count, options.settings);
+            Json entry{{"scatter_ns", floor.scatter_ns},
+                       {"atomic_ns", floor.atomic_ns},
+                       {"sort_ns", floor.sort_ns},
+                       {"backend", backend},
+                       {"points", count}};
+            json["floor"] = {{"scatter_ns", floor.scatter_ns}, {"atomic_ns", floor.atomic_ns}};
+            floors.push_back(entry);
+            if (!options.json)
+                fmt::print(
+                    "{} floor at {} points: random scatter {:.2f} ns, random atomic add {:.2f} ns a point\n"
+                    "{:<8} {:<10} {:>10} {:<24} {:>10} {:>10} {:>10} {:>10}\n",
+                    backend, count, floor.scatter_ns, floor.atomic_ns, "backend", "points are", "points", "structure",
+                    "build ns", "query ns", "bytes", "found");
+            for (const std::string& distribution : options.distributions) {
+                for (const std::string& structure : structures) {
+                    const PhotonBenchRow row =
+                        measure_photon_map(*device, structure, count, distribution, options.settings);
+                    rows.push_back(to_json(row));
+                    if (!options.json) print_row(row);
+                }
+            }
+        }
+    }
+    json["rows"] = rows;
+    json["floors"] = floors;
+    if (options.json) fmt::print("{}\n", json.dump(2));
+    return int(ExitCode::kDone);
+}
+
+void add_bench(CLI::App& parent, std::function<int()>& run) {
+    CLI::App* command = parent.add_subcommand("bench", "Measures parts of Lampyris on this machine");
+    command->require_subcommand(1);
+    auto options = std::make_shared<BenchOptions>();
+    CLI::App* maps = command->add_subcommand("photon-maps", "Photon-query structures: time and memory per photon");
+    maps->add_option("--structures", options->structures, "NAME[:key=value...],... (default: all)")->delimiter(',');
+    maps->add_option("--backend", options->backends, "cpu, cpu-bvh2, vulkan; several joined by commas")
+        ->delimiter(',')
+        ->capture_default_str();
+    maps->add_option("--points", options->points, "numbers of photons")->delimiter(',')->capture_default_str();
+    maps->add_option("--distribution", options->distributions, "uniform, clustered, planar")
+        ->delimiter(',')
+        ->check(CLI::IsMember(photon_distributions()))
+        ->capture_default_str();
+    maps->add_option("--queries", options->settings.queries, "queries of a measurement")->capture_default_str();
+    maps->add_option("--found", options->settings.found, "photons that a query shall find, on average")
+        ->capture_default_str();
+    maps->add_option("--seconds", options->settings.seconds, "that a measurement lasts, at least")
+        ->capture_default_str();
+    maps->add_option("--device", options->device.device, "number, or part of the name");
+    maps->add_option("--threads", options->device.threads, "of the CPU backends (0: all)");
+    maps->add_option("--plugin", options->plugins, "load a plugin first")->type_name("FILE.so");
+    maps->add_flag("--json", options->json, "print JSON, schema lampyris.photon-bench/1 (docs/photon-maps.md)");
+    maps->callback([&run, options] { run = [options] { return bench(*options); }; });
+}
+
+REGISTER_COMMAND(add_bench);
+
+}  // namespace
+}  // namespace lampyris

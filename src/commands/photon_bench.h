@@ -1,0 +1,38 @@
+// Measurements behind `lampyris bench photon-maps`.
+#pragma once
+
+#include "core/device.h"
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lampyris {
+
+struct PhotonBenchSettings {
+    uint32_t queries = 100'000;
+    double found = 10;     // photons in range of a query, on average
+    double seconds = 0.2;  // a measurement is repeated for so long, three times at least; the median counts
+};
+
+// Nanoseconds per point of work that no structure does without: a record of 16 bytes written to, and a counter incremented at, a
+// random place among as many as there are points; and of a radix sort of 64-bit keys on one thread.
+struct PhotonBenchFloor {
+    double scatter_ns = 0, atomic_ns = 0, sort_ns = 0;
+};
+PhotonBenchFloor measure_floor(Device& device, uint32_t points, const PhotonBenchSettings& settings);
+
+struct PhotonBenchRow {
+    std::string structure;  // as asked for
+    std::vector<std::pair<std::string, std::string>> parameters;
+    std::string backend, distribution;
+    uint32_t points = 0;
+    double construction_ns_per_point = 0, query_ns = 0, bytes_per_point = 0, photons_found_mean = 0;
+};
+PhotonBenchRow measure_photon_map(Device& device, const std::string& structure, uint32_t points,
+                                  const std::string& distribution, const PhotonBenchSettings& settings);
+
+std::vector<std::string> photon_distributions();  // uniform, clustered, planar
+
+}  // namespace lampyris
