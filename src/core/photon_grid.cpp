@@ -44,4 +44,8 @@ kernel::PhotonGrid make_grid(const PhotonSet& photons, float multiple) {
     return grid;
 }
 
+uint32_t table_entries(const PhotonSet& photons, float per_photon) {
+    return uint32_t(std::clamp(double(photons.count) * double(per_photon), 1.0, double(1u << 30)));
+}
+
 }  // namespace lampyris

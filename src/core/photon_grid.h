@@ -10,4 +10,7 @@ namespace lampyris {
 // where the radius is tiny.
 kernel::PhotonGrid make_grid(const PhotonSet& photons, float multiple);
 
+// Entries of a table with so many per photon: one at least.
+uint32_t table_entries(const PhotonSet& photons, float per_photon);
+
 }  // namespace lampyris

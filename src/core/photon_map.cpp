@@ -116,6 +116,12 @@ void PhotonMap::run(const std::string& file, std::initializer_list<BufferHandle>
     device().run(compiled(file, 0), nullptr, list, 0, count);
 }
 
+void PhotonMap::run_serially(const std::string& file, std::initializer_list<BufferHandle> buffers, uint32_t count) {
+    const std::vector<BufferHandle> list(buffers);
+    const Kernel& kernel = compiled(file, 0);
+    for (uint32_t i = 0; i < count; ++i) device().run(kernel, nullptr, list, i, 1);
+}
+
 const BufferHandle& PhotonMap::keep(const std::string& name, size_t bytes) {
     BufferHandle& buffer = buffers_[name];
     if (!buffer || buffer->size() < bytes) {

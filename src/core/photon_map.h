@@ -102,6 +102,8 @@ class PhotonMap {
     Device& device() const { return *device_; }
     // Runs a kernel of construction, by its file below the source root.
     void run(const std::string& file, std::initializer_list<BufferHandle> buffers, uint32_t count);
+    // The same, one invocation after the other.
+    void run_serially(const std::string& file, std::initializer_list<BufferHandle> buffers, uint32_t count);
     // A buffer of at least this size, kept between builds. What it holds is indeterminate.
     const BufferHandle& keep(const std::string& name, size_t bytes);
     const BufferHandle& kept(const std::string& name) const { return buffers_.at(name); }

@@ -1,7 +1,6 @@
-#include "accel/sorted_grid/sorted_grid.params.h"
 #include "core/photon_grid.h"
+#include "accel/sorted_grid/sorted_grid.params.h"
 
-#include <algorithm>
 #include <bit>
 
 namespace lampyris {
@@ -20,8 +19,7 @@ class SortedGrid : public PhotonMap {
 
     void construct(const PhotonSet& photons) override {
         kernel::PhotonGrid grid = make_grid(photons, params.cell_size);
-        const double wanted = std::clamp(double(photons.count) * double(params.table_size), 1.0, double(1u << 30));
-        const uint32_t entries = std::bit_ceil(uint32_t(wanted));
+        const uint32_t entries = std::bit_ceil(table_entries(photons, params.table_size));
         grid.sizes.y = entries;
         const BufferHandle record = upload("grid", grid);
         const BufferHandle starts = keep("starts", (size_t(entries) + 1) * 4);

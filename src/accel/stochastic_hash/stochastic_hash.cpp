@@ -51,8 +51,7 @@ class StochasticHash : public PhotonMap {
 
     void construct(const PhotonSet& photons) override {
         HashRecord record{make_grid(photons, params.cell_size), {params.selection, 0, 0, 0}, {}};
-        const double wanted = std::clamp(double(photons.count) * double(params.table_size), 1.0, double(1u << 30));
-        buckets_ = uint32_t(wanted);
+        buckets_ = table_entries(photons, params.table_size);
         record.grid.sizes = {photons.count, buckets_, params.slots, record.grid.resolution.w * 0x9e3779b9u + 1u};
         // 1024 for a photon of mean power: weights are whole, and 2^22 times the mean is as bright as a photon gets.
         if (photons.mean_power > 0) record.flux_scale.x = 1024.0f / (3.0f * photons.mean_power);

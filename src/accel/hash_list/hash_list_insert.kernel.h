@@ -1,0 +1,29 @@
+// One thread links one photon after the other: invocations run one by one, each for CHUNK photons (hash_list.cpp).
+#include "core/kernel/photon_grid.h"
+
+BUFFER_RO(0, PhotonGrid, grid)
+BUFFER_RO(1, PhotonRecord, photons)
+BUFFER_RW(2, uint, heads)
+BUFFER_RW(3, uvec4, nodes)
+
+CONST uint CHUNK = 4096u;
+
+KERNEL(hash_list_insert) {
+    PhotonGrid g = grid[0];
+    uint end = min((index + 1u) * CHUNK, g.sizes.x);
+    uint begin = index * CHUNK;
+    for (; begin < end; begin += BATCH) {
+        uint buckets[BATCH];
+        uint count = min(BATCH, end - begin);
+        for (uint k = 0u; k < count; ++k) {
+            buckets[k] = grid_entry(g, grid_cell(g, place_position(photons[begin + k].place)));
+            PREFETCH(heads[buckets[k]]);
+        }
+        for (uint k = 0u; k < count; ++k) {
+            uvec4 place = photons[begin + k].place;
+            nodes[begin + k] = uvec4(place.x, place.y, place.z, heads[buckets[k]]);
+            heads[buckets[k]] = begin + k + 1u;
+        }
+    }
+    if (begin < end) REPORT_UNFINISHED();
+}

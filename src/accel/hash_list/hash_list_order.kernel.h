@@ -1,0 +1,21 @@
+// The same thread sorts the chains by key, CHUNK buckets an invocation.
+#include "core/kernel/photon_grid.h"
+
+BUFFER_RO(0, PhotonGrid, grid)
+BUFFER_RO(1, PhotonRecord, photons)
+BUFFER_RW(2, uint, heads)
+BUFFER_RW(3, uvec4, nodes)
+#include "accel/linked_list/linked_list_sort.layout.h"
+
+CONST uint CHUNK = 4096u;
+
+KERNEL(hash_list_order) {
+    uint end = min((index + 1u) * CHUNK, grid[0].sizes.y);
+    uint b = index * CHUNK;
+    for (; b < end; ++b) {
+        uint ahead = min(b + 8u, end - 1u);
+        if (heads[ahead] != 0u) PREFETCH(nodes[heads[ahead] - 1u]);
+        if (heads[b] != 0u && nodes[heads[b] - 1u].w != 0u) heads[b] = chain_sort(heads[b]);
+    }
+    if (b < end) REPORT_UNFINISHED();
+}

@@ -1,0 +1,24 @@
+// Each photon becomes the head of its bucket's chain.
+#include "core/kernel/photon_grid.h"
+
+BUFFER_RO(0, PhotonGrid, grid)
+BUFFER_RO(1, PhotonRecord, photons)
+BUFFER_RW(2, uint, heads)  // a photon's index plus one; 0 ends a chain
+BUFFER_RW(3, uvec4, nodes)
+
+KERNEL(linked_list_link) {
+    PhotonGrid g = grid[0];
+    uint buckets[BATCH];
+    for (uint k = 0u; k < BATCH; ++k) {
+        uint i = batch_item(index, k);
+        if (i >= g.sizes.x) continue;
+        buckets[k] = grid_entry(g, grid_cell(g, place_position(photons[i].place)));
+        PREFETCH(heads[buckets[k]]);
+    }
+    for (uint k = 0u; k < BATCH; ++k) {
+        uint i = batch_item(index, k);
+        if (i >= g.sizes.x) continue;
+        uvec4 place = photons[i].place;
+        nodes[i] = uvec4(place.x, place.y, place.z, ATOMIC_EXCHANGE_U32(heads[buckets[k]], i + 1u));
+    }
+}
