@@ -1,0 +1,13 @@
+// Cells of the uniform grid: `counts` has two words a cell, the number of its photons and the first link of those beyond the
+// capacity (a photon's index plus one; 0: none). Slots hold photons' indices.
+#ifndef LAMPYRIS_UNIFORM_GRID
+#define LAMPYRIS_UNIFORM_GRID
+
+#include "core/kernel/photon_grid.h"
+
+// In PhotonGrid: sizes.y cells, sizes.z capacity, sizes.w 1: what is beyond it is dropped.
+FN uint uniform_grid_index(IN(PhotonGrid) g, uvec3 cell) {
+    return (cell.z * g.resolution.y + cell.y) * g.resolution.x + cell.x;
+}
+
+#endif
