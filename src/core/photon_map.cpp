@@ -74,35 +74,40 @@ void PhotonMap::open(Device& device) {
     for (const std::string& file : kernels()) compiled(file, 0);
 }
 
-void PhotonMap::prepare(const PhotonConsumer& consumer) {
-    compiled(fmt::format("{}+{}{}.gather.h", consumer.file, folder(), name()), consumer.effects);
+std::vector<const Kernel*> PhotonMap::gather_kernels(const PhotonConsumer& consumer) {
+    std::vector<const Kernel*> kernels;
+    for (const std::string& file : gather_files())
+        kernels.push_back(&compiled(fmt::format("{}+{}{}", consumer.file, folder(), file), consumer.effects));
+    return kernels;
 }
+
+void PhotonMap::prepare(const PhotonConsumer& consumer) { gather_kernels(consumer); }
 
 void PhotonMap::build(const PhotonSet& photons) {
     const auto start = Clock::now();
-    const double kernels = kernel_seconds();
+    const double before = kernel_seconds();
     photons_ = photons;
     construct(photons);
     statistics_.construction_s += seconds_since(start);
-    statistics_.construction_kernel_s += kernel_seconds() - kernels;
+    statistics_.construction_kernel_s += kernel_seconds() - before;
 }
 
 void PhotonMap::gather(const PhotonConsumer& consumer, const BufferHandle& queries, uint32_t first, uint32_t count) {
-    const Kernel& kernel = compiled(fmt::format("{}+{}{}.gather.h", consumer.file, folder(), name()), consumer.effects);
+    const std::vector<const Kernel*> kernels = gather_kernels(consumer);
     const auto start = Clock::now();
-    const double kernels = kernel_seconds();
+    const double before = kernel_seconds();
     std::vector<BufferHandle> buffers{queries};
     for (const BufferHandle& buffer : gather_buffers()) buffers.push_back(buffer);
     buffers.resize(16);
     buffers.insert(buffers.end(), consumer.buffers.begin(), consumer.buffers.end());
-    run_gather(kernel, consumer, buffers, first, count);
+    run_gather(kernels, consumer, buffers, first, count);
     statistics_.gathering_s += seconds_since(start);
-    statistics_.gathering_kernel_s += kernel_seconds() - kernels;
+    statistics_.gathering_kernel_s += kernel_seconds() - before;
 }
 
-void PhotonMap::run_gather(const Kernel& kernel, const PhotonConsumer& consumer, std::span<const BufferHandle> buffers,
-                           uint32_t first, uint32_t count) {
-    device().run(kernel, consumer.scene, buffers, first, count);
+void PhotonMap::run_gather(std::span<const Kernel* const> kernels, const PhotonConsumer& consumer,
+                           std::span<const BufferHandle> buffers, uint32_t first, uint32_t count) {
+    device().run(*kernels[0], consumer.scene, buffers, first, count);
 }
 
 size_t PhotonMap::memory_bytes() const {

@@ -28,7 +28,8 @@ struct PhotonMapCapabilities {
     bool lossy = false;          // drops photons where its memory does not suffice, and weights the others up: biased
     bool fixed_order = false;    // hands photons over in an order that depends on nothing but the photons and the seed
     bool needs_queries = false;  // build() reads the queries: a structure over hit points
-    bool k_nearest = false;      // can also find the k nearest
+    bool sums_only = false;  // hands consumers sums, not photons: gather_value and gather_sums (core/kernel/gather.h)
+    bool k_nearest = false;  // can also find the k nearest
     bool int64_atomics = false;  // what it needs of the device
 };
 
@@ -95,9 +96,11 @@ class PhotonMap {
     // Bindings 1 to 15 of the gather kernel; 0 is the queries'.
     virtual std::vector<BufferHandle> gather_buffers() const = 0;
     virtual std::vector<std::string> kernels() const = 0;  // of construction, to compile
-    // Runs the gather kernel: over queries, unless a map does it another way.
-    virtual void run_gather(const Kernel& kernel, const PhotonConsumer& consumer, std::span<const BufferHandle> buffers,
-                            uint32_t first, uint32_t count);
+    // The files that make gather kernels with the consumer.
+    virtual std::vector<std::string> gather_files() const { return {name() + ".gather.h"}; }
+    // Runs these kernels: the first over queries, unless a map does it another way.
+    virtual void run_gather(std::span<const Kernel* const> kernels, const PhotonConsumer& consumer,
+                            std::span<const BufferHandle> buffers, uint32_t first, uint32_t count);
 
     Device& device() const { return *device_; }
     // Runs a kernel of construction, by its file below the source root.
@@ -121,6 +124,7 @@ class PhotonMap {
 
  private:
     void scan_level(const BufferHandle& values, uint32_t count, int level);
+    std::vector<const Kernel*> gather_kernels(const PhotonConsumer& consumer);
     const Kernel& compiled(const std::string& file, uint32_t effects);
     double kernel_seconds() const;
     Device* device_ = nullptr;

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <random>
 
@@ -25,6 +26,17 @@ struct Size {
 };
 // photon_map_long_test has the sizes of the specification.
 constexpr Size kSizes[] = {{2000, 4000}, {20'000, 200}, {1, 50}};
+
+// By the sum of hashed keys, or where a map knows sums only, by the number and the power of what was found: the reference adds up floats, with
+// a relative error of n * 2^-24 at most.
+bool same_photons(const CollectResult& found, const CollectResult& expected, bool sums_only) {
+    if (!sums_only) return found.found == expected.found;
+    bool same = found.found.x == expected.found.x;
+    for (int c = 0; c < 3; ++c)
+        same = same &&
+               std::abs(found.sum[c] - expected.sum[c]) <= 1e-6f * float(expected.found.x) * expected.sum[c] + 1e-6f;
+    return same;
+}
 
 TEST(PhotonMap, ExactOnesFindWhatBruteForceFinds) {
     const auto reference = create_device("cpu");
@@ -61,7 +73,7 @@ TEST(PhotonMap, ExactOnesFindWhatBruteForceFinds) {
                 }
                 size_t wrong = 0;
                 for (size_t i = 0; i < found.size(); ++i) {
-                    if (found[i].found == expected.results[i].found) continue;
+                    if (same_photons(found[i], expected.results[i], map->capabilities().sums_only)) continue;
                     if (wrong++ == 0)
                         ADD_FAILURE() << "query " << i << " finds " << found[i].found.x << " of "
                                       << expected.results[i].found.x;
@@ -132,7 +144,8 @@ TEST(PhotonMap, MapsAreReusedFromPassToPass) {
             PhotonSet set = upload_case(*device, make_photon_case("random", photons, 300, photons));
             set.pass = photons;
             const auto found = collect(*device, *map, set), expected = collect(*device, *fresh, set);
-            for (size_t i = 0; i < found.size(); ++i) ASSERT_EQ(found[i].found, expected[i].found);
+            for (size_t i = 0; i < found.size(); ++i)
+                ASSERT_TRUE(same_photons(found[i], expected[i], map->capabilities().sums_only)) << "query " << i;
             if (bytes == 0) bytes = map->memory_bytes();
             EXPECT_LE(map->memory_bytes(), bytes + bytes / 8) << "memory grows from pass to pass";
         }

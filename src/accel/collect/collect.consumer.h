@@ -25,6 +25,19 @@ FN void gather_add(INOUT(Gathered) g, uint query, IN(PhotonRecord) photon, float
     g.checksum += hash32(photon.place.w);
 }
 
+FN vec4 gather_value(uint query, IN(PhotonRecord) photon, float distance_squared) {
+    vec3 power = photon_power(photon);
+    return vec4(power.x, power.y, power.z, 1.0f);
+}
+
+// No keys: the checksum is 0.
+FN Gathered gather_sums(uint query, vec4 sums) {
+    Gathered g = gather_begin(query);
+    g.sum = sums;
+    g.found = uint(sums.w + 0.5f);
+    return g;
+}
+
 FN void gather_end(IN(Gathered) g, uint query) {
     CollectResult r;
     r.sum = g.sum;

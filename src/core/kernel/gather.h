@@ -6,7 +6,10 @@
 //     FN Gathered gather_begin(uint query)
 //     FN void gather_add(INOUT(Gathered) g, uint query, IN(PhotonRecord) photon, float distance_squared, float weight)
 //     FN void gather_end(IN(Gathered) g, uint query)               called for every query with a radius >= 0
-// and traces no rays. A photon stands for `weight` photons, itself among them; 1 where the structure is exact. Bindings 0 to 15 are the
+// and, for structures over the hit points, whose photons come to the queries one by one and in no order,
+//     FN vec4 gather_value(uint query, IN(PhotonRecord) photon, float distance_squared)     what gather_add adds, as four sums >= 0
+//     FN Gathered gather_sums(uint query, vec4 sums)                                        what these sums have gathered
+// (xyz in units of power, w a count), and traces no rays. A photon stands for `weight` photons, itself among them; 1 where the structure is exact. Bindings 0 to 15 are the
 // structure's, 16 and up the consumer's.
 #ifndef LAMPYRIS_KERNEL_GATHER
 #define LAMPYRIS_KERNEL_GATHER
