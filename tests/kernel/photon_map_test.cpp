@@ -56,6 +56,7 @@ TEST(PhotonMap, ExactOnesFindWhatBruteForceFinds) {
     std::vector<std::string> maps = exact_photon_maps();
     maps.emplace_back("brute_force");
     for (const std::string& backend : usable_backends()) {
+        if (backend == "cpu-bvh2") continue;  // kernels that trace no rays are the same ones there
         const auto device = create_device(backend);
         for (const std::string& choice : maps) {
             if (choice == "brute_force" && backend == "cpu") continue;

@@ -36,7 +36,7 @@ class UniformGrid : public PhotonMap {
         grid.sizes = {photons.count, cells, params.capacity, params.overflow};
         const BufferHandle record = upload("grid", grid);
         const BufferHandle counts = keep("counts", size_t(cells) * 8);
-        const BufferHandle slots = keep("slots", size_t(cells) * params.capacity * 4);
+        const BufferHandle slots = keep("slots", size_t(cells) * params.capacity * 16);
         const BufferHandle nodes = keep("nodes", drops() ? 16 : size_t(photons.count) * 16);
         const BufferHandle dropped = upload("dropped", uint32_t(0));
         clear(counts, size_t(cells) * 8);

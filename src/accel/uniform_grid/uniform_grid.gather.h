@@ -4,7 +4,7 @@
 
 BUFFER_RO(1, PhotonGrid, grid)
 BUFFER_RO(2, uvec2, counts)
-BUFFER_RO(3, uint, slots)
+BUFFER_RO(3, uvec4, slots)
 BUFFER_RO(4, uvec4, nodes)
 BUFFER_RO(5, PhotonRecord, photons)
 
@@ -12,12 +12,11 @@ FN void uniform_grid_cell(IN(PhotonGrid) g, vec4 q, uint cell, uint query, INOUT
     uvec2 count = counts[cell];
     uint held = min(count.x, g.sizes.z);
     uint first = cell * g.sizes.z;
-    for (uint s = 0u; s < held; ++s) PREFETCH(photons[slots[first + s]]);
     float weight = g.sizes.w != 0u && held > 0u ? float(count.x) / float(held) : 1.0f;
     for (uint s = 0u; s < held; ++s) {
-        PhotonRecord photon = photons[slots[first + s]];
+        uvec4 slot = slots[first + s];
         float d2;
-        if (in_range(photon_position(photon), vec3(q), q.w, d2)) gather_add(gathered, query, photon, d2, weight);
+        if (in_range(place_position(slot), vec3(q), q.w, d2)) gather_add(gathered, query, photons[slot.w], d2, weight);
     }
     uint link = count.y;
     uint steps = 0u;

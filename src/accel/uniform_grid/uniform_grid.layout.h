@@ -1,5 +1,6 @@
 // Cells of the uniform grid: `counts` has two words a cell, the number of its photons and the first link of those beyond the
-// capacity (a photon's index plus one; 0: none). Slots hold photons' indices.
+// capacity (a photon's index plus one; 0: none). A slot is a photon's position and, in w,
+// its index.
 #ifndef LAMPYRIS_UNIFORM_GRID
 #define LAMPYRIS_UNIFORM_GRID
 

@@ -4,7 +4,7 @@
 BUFFER_RO(0, PhotonGrid, grid)
 BUFFER_RO(1, PhotonRecord, photons)
 BUFFER_RW(2, uint, counts)
-BUFFER_RW(3, uint, slots)
+BUFFER_RW(3, uvec4, slots)
 BUFFER_RW(4, uvec4, nodes)
 #include "accel/linked_list/linked_list_sort.layout.h"
 
@@ -12,11 +12,11 @@ CONST uint MOST_SLOTS = 16u;
 
 FN void uniform_grid_sort(uint first, uint count) {
     uint keys[MOST_SLOTS];
-    uint items[MOST_SLOTS];
-    for (uint s = 0u; s < count; ++s) PREFETCH(photons[slots[first + s]].place);
+    uvec4 items[MOST_SLOTS];
+    for (uint s = 0u; s < count; ++s) PREFETCH(photons[slots[first + s].w].place);
     for (uint s = 0u; s < count; ++s) {
-        uint item = slots[first + s];
-        uint key = photons[item].place.w;
+        uvec4 item = slots[first + s];
+        uint key = photons[item.w].place.w;
         uint hole = s;
         for (; hole > 0u && keys[hole - 1u] > key; --hole) {
             keys[hole] = keys[hole - 1u];
@@ -42,15 +42,15 @@ KERNEL(uniform_grid_order) {
         }
         uint head = counts[2u * cell + 1u];
         for (uint s = 0u; s < g.sizes.z; ++s) {
-            uint item = slots[first + s];
-            uvec4 place = photons[item].place;
-            nodes[item] = uvec4(place.x, place.y, place.z, head);
-            head = item + 1u;
+            uvec4 slot = slots[first + s];
+            nodes[slot.w] = uvec4(slot.x, slot.y, slot.z, head);
+            head = slot.w + 1u;
         }
         head = chain_sort(head);
         for (uint s = 0u; s < g.sizes.z; ++s) {
-            slots[first + s] = head - 1u;
-            head = nodes[head - 1u].w;
+            uvec4 node = nodes[head - 1u];
+            slots[first + s] = uvec4(node.x, node.y, node.z, head - 1u);
+            head = node.w;
         }
         counts[2u * cell + 1u] = head;
     }

@@ -4,7 +4,7 @@
 BUFFER_RO(0, PhotonGrid, grid)
 BUFFER_RO(1, PhotonRecord, photons)
 BUFFER_RW(2, uint, counts)
-BUFFER_RW(3, uint, slots)
+BUFFER_RW(3, uvec4, slots)
 BUFFER_RW(4, uvec4, nodes)  // of photons beyond the capacity: position, link to the next
 BUFFER_RW(5, uint, dropped)
 
@@ -21,13 +21,13 @@ KERNEL(uniform_grid_store) {
     for (uint k = 0u; k < BATCH; ++k) {
         uint i = batch_item(index, k);
         if (i >= g.sizes.x) continue;
+        uvec4 place = photons[i].place;
         uint rank = ATOMIC_ADD_U32(counts[2u * cells[k]], 1u);
         if (rank < g.sizes.z) {
-            slots[cells[k] * g.sizes.z + rank] = i;
+            slots[cells[k] * g.sizes.z + rank] = uvec4(place.x, place.y, place.z, i);
         } else if (g.sizes.w != 0u) {
             ATOMIC_ADD_U32(dropped[0], 1u);
         } else {
-            uvec4 place = photons[i].place;
             nodes[i] = uvec4(place.x, place.y, place.z, ATOMIC_EXCHANGE_U32(counts[2u * cells[k] + 1u], i + 1u));
         }
     }
