@@ -54,6 +54,29 @@ FN float light_pdf(IN(Surface) s, vec3 ref_p, vec3 wi) {
     return pdf * light.emission.w;
 }
 
+// The share of a masked light that is there: rays find it with this probability.
+FN float light_alpha(IN(LightRecord) light, vec3 position, vec3 ng, vec2 uv) {
+    TextureContext context;
+    context.position = position;
+    context.normal = ng;
+    context.uv = uv;
+    return clamp(surface_alpha(light.ids.x, context), 0.0f, 1.0f);
+}
+
+// A point on an area light, uniform in its area (of patches that are plane); false where it has none.
+FN bool sample_light_area(IN(LightRecord) light, vec2 u, OUT(AreaSample) s) {
+    if (!HAS(EFFECT_QUADRIC_LIGHTS) || light.data.x == LIGHT_TRIANGLE) {
+        s = sample_triangle_area(light, u);
+    } else if (HAS(EFFECT_BILINEAR) && geometries[light.ids.x].data.x == GEOMETRY_BILINEAR) {
+        s = sample_bilinear_area(light.ids.x, light.ids.y, u);
+    } else if (HAS(EFFECT_QUADRICS)) {
+        s = sample_quadric_area(light.ids.x, u);
+    } else {
+        return false;
+    }
+    return s.pdf > 0.0f && is_finite(s.pdf);
+}
+
 FN bool sample_area_light(uint index, vec3 ref_p, vec2 u, INOUT(LightSample) s) {
     LightRecord light = lights[index];
     ShapeSample shape;
@@ -70,14 +93,7 @@ FN bool sample_area_light(uint index, vec3 ref_p, vec2 u, INOUT(LightSample) s) 
     s.distance = shape.distance;
     s.pdf = shape.pdf * light.emission.w;
     s.radiance = area_emission(index, shape.position, shape.ng, shape.uv, -shape.wi);
-    if (HAS(EFFECT_ALPHA)) {
-        // Rays find a masked point with the probability that is its alpha: that is its share here.
-        TextureContext context;
-        context.position = shape.position;
-        context.normal = shape.ng;
-        context.uv = shape.uv;
-        s.radiance = s.radiance * clamp(surface_alpha(light.ids.x, context), 0.0f, 1.0f);
-    }
+    if (HAS(EFFECT_ALPHA)) s.radiance = s.radiance * light_alpha(light, shape.position, shape.ng, shape.uv);
     return !is_black(s.radiance);
 }
 

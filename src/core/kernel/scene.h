@@ -19,6 +19,7 @@
 #include "core/kernel/material.h"
 #include "core/kernel/intersect.h"
 #include "core/kernel/light.h"
+#include "core/kernel/emission.h"
 #include "core/kernel/camera.h"
 
 #endif

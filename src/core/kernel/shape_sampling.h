@@ -33,6 +33,15 @@ FN bool shape_sample_from_area(vec3 ref_p, float pdf_area, INOUT(ShapeSample) s)
     return s.pdf > 0.0f && is_finite(s.pdf);
 }
 
+// A point on a light, chosen by area: where photons start.
+struct AreaSample {
+    vec3 position;
+    vec3 error;  // bound of the absolute rounding error of `position`, per coordinate
+    vec3 ng;     // unit geometric normal, oriented as Surface's
+    vec2 uv;
+    float pdf;  // per area
+};
+
 // ---- Triangles -------------------------------------------------------------------------------------------------------
 
 // Below this solid angle (sr) a triangle is sampled by area: distance and cosine vary little over it. At 0.2 sr (the lamp of
@@ -114,6 +123,32 @@ FN vec3 triangle_light_normal(IN(LightRecord) light, vec3 barycentric) {
     return ng;
 }
 
+// pbrt's uv of a triangle without any are (0,0), (1,0), (1,1).
+FN vec2 triangle_light_uv(IN(LightRecord) light, vec3 barycentric) {
+    if ((HAS(EFFECT_LIGHT_TEXTURES) || HAS(EFFECT_ALPHA)) &&
+        (geometries[light.ids.x].data.y & GEOMETRY_HAS_UVS) != 0u) {
+        uint uvs_of = geometries[light.ids.x].attributes.y;
+        uvec3 corner = triangle_light_corners(light);
+        return barycentric.x * vertex_uv(uvs_of + corner.x) + barycentric.y * vertex_uv(uvs_of + corner.y) +
+               barycentric.z * vertex_uv(uvs_of + corner.z);
+    }
+    return vec2(barycentric.y + barycentric.z, barycentric.z);
+}
+
+FN AreaSample sample_triangle_area(IN(LightRecord) light, vec2 u) {
+    vec3 barycentric = sample_uniform_triangle(u);
+    vec3 p0 = vec3(light.v0);
+    vec3 p1 = vec3(light.v1);
+    vec3 p2 = vec3(light.v2);
+    AreaSample s;
+    s.position = barycentric.x * p0 + barycentric.y * p1 + barycentric.z * p2;
+    s.error = gamma_bound(7.0f) * (abs(barycentric.x * p0) + abs(barycentric.y * p1) + abs(barycentric.z * p2));
+    s.ng = triangle_light_normal(light, barycentric);
+    s.uv = triangle_light_uv(light, barycentric);
+    s.pdf = 1.0f / light.v0.w;
+    return s;
+}
+
 FN bool sample_triangle_light(IN(LightRecord) light, vec3 ref_p, vec2 u, OUT(ShapeSample) s) {
     vec3 p0 = vec3(light.v0);
     vec3 e1 = vec3(light.v1) - p0;
@@ -145,14 +180,7 @@ FN bool sample_triangle_light(IN(LightRecord) light, vec3 ref_p, vec2 u, OUT(Sha
         s.ng = triangle_light_normal(light, barycentric);
         if (!shape_sample_from_area(ref_p, 1.0f / light.v0.w, s)) return false;
     }
-    s.uv = vec2(barycentric.y + barycentric.z, barycentric.z);  // pbrt's: (0,0), (1,0), (1,1)
-    if ((HAS(EFFECT_LIGHT_TEXTURES) || HAS(EFFECT_ALPHA)) &&
-        (geometries[light.ids.x].data.y & GEOMETRY_HAS_UVS) != 0u) {
-        uint uvs_of = geometries[light.ids.x].attributes.y;
-        uvec3 corner = triangle_light_corners(light);
-        s.uv = barycentric.x * vertex_uv(uvs_of + corner.x) + barycentric.y * vertex_uv(uvs_of + corner.y) +
-               barycentric.z * vertex_uv(uvs_of + corner.z);
-    }
+    s.uv = triangle_light_uv(light, barycentric);
     return true;
 }
 
@@ -207,6 +235,20 @@ FN float sphere_cone(vec4 params, vec3 ref_p) {
     return sin2 / (1.0f + sqrt(1.0f - sin2));
 }
 
+FN AreaSample sample_quadric_area(uint geometry, vec2 u) {
+    GeometryRecord g = geometries[geometry];
+    vec3 p = sample_quadric_point(g.data.x, g.params, u);
+    AreaSample s;
+    s.position = quadric_set_position(geometry, p, s.error);
+    vec3 n = quadric_set_normal(geometry, p);
+    float n_length = length_of(n);
+    s.ng = n / n_length;
+    s.uv = vec2(0.0f);
+    if (HAS(EFFECT_LIGHT_TEXTURES) || HAS(EFFECT_ALPHA)) s.uv = quadric_uv(g.data.x, g.params, p);
+    s.pdf = quadric_pdf_area(g, transforms[g.ids.w], n_length);
+    return s;
+}
+
 FN bool sample_quadric_light(uint geometry, vec3 ref_p, vec2 u, OUT(ShapeSample) s) {
     GeometryRecord g = geometries[geometry];
     TransformRecord m = transforms[g.ids.w];
@@ -242,14 +284,11 @@ FN bool sample_quadric_light(uint geometry, vec3 ref_p, vec2 u, OUT(ShapeSample)
             return is_finite(s.pdf);
         }
     }
-    vec3 p = sample_quadric_point(kind, g.params, u);
-    vec3 error;
-    s.position = quadric_set_position(geometry, p, error);
-    vec3 n = quadric_set_normal(geometry, p);
-    float n_length = length_of(n);
-    s.ng = n / n_length;
-    if (HAS(EFFECT_LIGHT_TEXTURES) || HAS(EFFECT_ALPHA)) s.uv = quadric_uv(kind, g.params, p);
-    return shape_sample_from_area(ref_p, quadric_pdf_area(g, m, n_length), s);
+    AreaSample place = sample_quadric_area(geometry, u);
+    s.position = place.position;
+    s.ng = place.ng;
+    s.uv = place.uv;
+    return shape_sample_from_area(ref_p, place.pdf, s);
 }
 
 FN float pdf_quadric_light(uint geometry, vec3 ref_p, vec3 position, vec3 ng, vec3 wi) {
@@ -284,15 +323,26 @@ FN float patch_pdf_area(IN(Patch) b, vec2 uv) {
     return stretch > 0.0f ? pdf_bilinear(uv, patch_stretch(b)) / stretch : 0.0f;
 }
 
-FN bool sample_bilinear_light(uint geometry, uint primitive, vec3 ref_p, vec2 u, OUT(ShapeSample) s) {
+FN AreaSample sample_bilinear_area(uint geometry, uint primitive, vec2 u) {
     Patch b = load_patch(geometry, primitive);
     vec2 uv = sample_bilinear(u, patch_stretch(b));
     Surface surface;
     bilinear_fill(geometry, primitive, uv, surface);
+    AreaSample s;
     s.position = surface.position;
+    s.error = surface.error;
     s.ng = surface.ng;
     s.uv = surface.uv;
-    return shape_sample_from_area(ref_p, patch_pdf_area(b, uv), s);
+    s.pdf = patch_pdf_area(b, uv);
+    return s;
+}
+
+FN bool sample_bilinear_light(uint geometry, uint primitive, vec3 ref_p, vec2 u, OUT(ShapeSample) s) {
+    AreaSample place = sample_bilinear_area(geometry, primitive, u);
+    s.position = place.position;
+    s.ng = place.ng;
+    s.uv = place.uv;
+    return shape_sample_from_area(ref_p, place.pdf, s);
 }
 
 // The surface's uv may be vertex attributes, so the patch's own are found again with the ray.

@@ -1,0 +1,105 @@
+// Photons leave lights: a light by its power, then a ray whose density follows what the light sends.
+//
+// Power is what the photon stands for if it were the only one: radiance times cosine, or intensity, over the density of the
+// choice (W per channel). Divide by the number of photons emitted.
+#ifndef LAMPYRIS_KERNEL_EMISSION
+#define LAMPYRIS_KERNEL_EMISSION
+
+struct Emission {
+    vec3 origin;  // beyond the rounding error of a light's surface
+    vec3 direction;
+    vec3 power;
+    uint light;
+};
+
+// The numbers that a photon's start takes: choice of the light, of the side that emits, place, direction.
+CONST uint EMISSION_DIMENSIONS = 6u;
+
+// Where the disk lies through which light from infinitely far enters the scene, as pbrt's: as wide as the bounding sphere,
+// touching it.
+FN vec3 distant_origin(vec3 to_light, vec2 u) {
+    vec2 disk = sample_concentric_disk(u);
+    Frame frame = frame_from_z(to_light);
+    vec4 bounds = scene[0].bounds;
+    return vec3(bounds) + bounds.w * (frame.x * disk.x + frame.y * disk.y + to_light);
+}
+FN float distant_area() { return PI * sqr(scene[0].bounds.w); }
+
+FN bool emit_from_area(uint index, float u_side, vec2 u_place, vec2 u_direction, INOUT(Emission) e) {
+    LightRecord light = lights[index];
+    AreaSample place;
+    if (!sample_light_area(light, u_place, place)) return false;
+    vec3 local = sample_cosine_hemisphere(u_direction);
+    float sides = 1.0f;
+    if ((light.data.y & LIGHT_TWO_SIDED) != 0u) {
+        sides = 2.0f;
+        if (u_side < 0.5f) local.z = -local.z;
+    }
+    e.direction = unit(to_world(frame_from_z(place.ng), local));
+    vec3 radiance = area_emission(index, place.position, place.ng, place.uv, e.direction);
+    if (HAS(EFFECT_ALPHA)) radiance = radiance * light_alpha(light, place.position, place.ng, place.uv);
+    e.power = radiance * (PI * sides / (place.pdf * light.emission.w));
+    e.origin = offset_origin(place.position, place.error, place.ng, e.direction);
+    return true;
+}
+
+FN bool emit_from_point(uint index, vec2 u_place, vec2 u_direction, INOUT(Emission) e) {
+    LightRecord light = lights[index];
+    float pdf = pdf_uniform_sphere();
+    e.origin = vec3(light.v0);
+    if (light.data.x == LIGHT_SPOT) {
+        float one_minus_cos = 1.0f - light.v2.w;
+        e.direction = to_world(frame_from_z(vec3(light.v1)), sample_uniform_cone(u_direction, one_minus_cos));
+        pdf = pdf_uniform_cone(one_minus_cos);
+    } else if (HAS(EFFECT_PROJECTION_LIGHTS) && light.data.x == LIGHT_PROJECTION) {
+        // Uniform over the picture at z = 1, which cos^3 turns into solid angle.
+        TransformRecord m = transforms[light.data.w];
+        vec2 p = vec2(lerp_of(u_direction.x, light.v2.x, light.v2.z), lerp_of(u_direction.y, light.v2.y, light.v2.w));
+        float d2 = p.x * p.x + p.y * p.y + 1.0f;
+        e.direction = unit(transform_vector(m.to0, m.to1, m.to2, vec3(p.x, p.y, 1.0f)));
+        pdf = d2 * sqrt(d2) / ((light.v2.z - light.v2.x) * (light.v2.w - light.v2.y)) *
+              solid_angle_stretch(m, e.direction);
+    } else {
+        e.direction = sample_uniform_sphere(u_direction);
+    }
+    e.direction = unit(e.direction);
+    e.power = point_light_intensity(light, e.direction) / (pdf * light.emission.w);
+    return true;
+}
+
+// The start of a photon, from six uniform numbers; false where the choice carries no light.
+FN bool emit_photon(float u_choice, float u_side, vec2 u_place, vec2 u_direction, OUT(Emission) e) {
+    e.origin = vec3(0.0f);
+    e.direction = vec3(0.0f, 0.0f, 1.0f);
+    e.power = vec3(0.0f);
+    uint count = scene[0].lights.x;
+    e.light = NONE;
+    if (count == 0u) return false;
+    e.light = count == 1u ? 0u : find_interval(scene[0].lights.z, count, u_choice);
+    uint kind = lights[e.light].data.x;
+    bool found = false;
+    if (HAS(EFFECT_AREA_LIGHTS) && kind <= LIGHT_GEOMETRY) {
+        found = emit_from_area(e.light, u_side, u_place, u_direction, e);
+    } else if (HAS(EFFECT_ENVIRONMENT) && (kind == LIGHT_INFINITE || kind == LIGHT_INFINITE_IMAGE)) {
+        vec3 to_light;
+        vec3 radiance;
+        float pdf;
+        found = environment_sample(e.light, u_direction, to_light, radiance, pdf);
+        if (found) {
+            e.direction = -to_light;
+            e.origin = distant_origin(to_light, u_place);
+            e.power = radiance * (distant_area() / pdf);
+        }
+    } else if (HAS(EFFECT_DISTANT_LIGHTS) && kind == LIGHT_DISTANT) {
+        LightRecord light = lights[e.light];
+        e.direction = -vec3(light.v0);
+        e.origin = distant_origin(vec3(light.v0), u_place);
+        e.power = vec3(light.emission) * (distant_area() / light.emission.w);
+        found = true;
+    } else if (HAS(EFFECT_POINT_LIGHTS) || HAS(EFFECT_PROJECTION_LIGHTS)) {
+        found = emit_from_point(e.light, u_place, u_direction, e);
+    }
+    return found && !is_black(e.power) && is_finite3(e.power);
+}
+
+#endif
