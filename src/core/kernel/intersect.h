@@ -163,22 +163,27 @@ FN bool alpha_passes(IN(Surface) s, vec3 o, vec3 d) {
 FN bool is_interface(IN(Surface) s) { return materials[s.material].data.x == MATERIAL_INTERFACE; }
 
 // The first surface point that the ray meets; masked surfaces are passed, interfaces are not. Directions are unit length.
-// `rays` counts the rays that were traced.
-FN bool intersect_scene(vec3 origin, vec3 direction, OUT(Surface) s, INOUT(uint) rays) {
-    vec3 o = origin;
+// `rays` counts the rays that were traced. `origin` is where the last of them started, `hit` what it met: surface_at(hit, origin,
+// direction, s) finds the point again.
+FN bool intersect_scene_from(INOUT(vec3) origin, vec3 direction, OUT(Surface) s, OUT(Hit) hit, INOUT(uint) rays) {
     float passed = 0.0f;
     for (uint i = 0u; i < MAX_PASSED_SURFACES; ++i) {
-        Hit hit;
         rays += 1u;
-        if (!trace_closest(o, direction, INFINITE_DISTANCE, hit)) return false;
-        if (!surface_at(hit, o, direction, s)) return false;
+        if (!trace_closest(origin, direction, INFINITE_DISTANCE, hit)) return false;
+        if (!surface_at(hit, origin, direction, s)) return false;
         s.distance += passed;
-        if (!(HAS(EFFECT_ALPHA) && alpha_passes(s, o, direction))) return true;
+        if (!(HAS(EFFECT_ALPHA) && alpha_passes(s, origin, direction))) return true;
         passed = s.distance;
-        o = offset_origin(s.position, s.error, s.ng, direction);
+        origin = offset_origin(s.position, s.error, s.ng, direction);
     }
     REPORT_UNFINISHED();
     return false;
+}
+
+FN bool intersect_scene(vec3 origin, vec3 direction, OUT(Surface) s, INOUT(uint) rays) {
+    vec3 o = origin;
+    Hit hit;
+    return intersect_scene_from(o, direction, s, hit, rays);
 }
 
 // Whether anything opaque lies between a surface point and a point `distance` away along the unit direction.

@@ -5,6 +5,7 @@
 // clang-format on
 #include "core/kernel/scene.h"
 
+#include "core/kernel/direct_light.h"
 #include "core/kernel/film.h"
 #include "integrators/path/path.params.h"
 
@@ -15,21 +16,6 @@ BUFFER_RW(2, FilmPixel, film)
 // After the camera's numbers each vertex has a fixed number of dimensions, so that a dimension means the same in every sample
 // whatever the path met before.
 CONST uint PATH_VERTEX_DIMENSIONS = 8u;
-
-// Direct light at a surface point from one sampled light.
-FN vec3 path_direct_light(IN(Surface) s, IN(Frame) frame, IN(Bsdf) bsdf, vec3 wo, float u_choice, vec2 u,
-                          INOUT(uint) rays) {
-    LightSample light;
-    if (!light_sample(s.position, u_choice, u, light)) return vec3(0.0f);
-    vec3 wi = to_local(frame, light.wi);
-    float density;
-    vec3 f = bsdf_eval_pdf(bsdf, wo, wi, TRANSPORT_RADIANCE, density) * abs(wi.z);
-    if (is_black(f)) return vec3(0.0f);
-    if (scene_occluded(s.position, s.error, s.ng, light.wi, light.distance, rays)) return vec3(0.0f);
-    float weight = 1.0f;
-    if (light.is_delta == 0u) weight = power_heuristic(light.pdf, density);
-    return f * light.radiance * (weight / light.pdf);
-}
 
 // Radiance that arrives at the camera along the ray. The first hit's features go to `pixel`.
 FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, IN(Sampler) numbers, INOUT(FilmPixel) pixel,
@@ -96,7 +82,7 @@ FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, IN(Sampler) numbers, 
             float u_light = 0.0f;
             if (scene[0].lights.x > 1u) u_light = sample_1d_at(numbers, dimension);
             vec2 u_light_point = sample_2d_at(numbers, dimension + 1u);
-            radiance += throughput * path_direct_light(s, frame, bsdf, wo, u_light, u_light_point, rays);
+            radiance += throughput * direct_light(s, frame, bsdf, wo, u_light, u_light_point, true, rays);
         }
 
         BsdfSample next;
