@@ -6,6 +6,7 @@
 #include "core/image/image_io.h"
 #include "core/image/metrics.h"
 #include "core/integrator.h"
+#include "core/photon_map.h"
 #include "core/plugin.h"
 #include "core/scene/build.h"
 #include "core/statistics.h"
@@ -28,6 +29,7 @@ struct ChosenIntegrator {
     std::string name;
     std::unique_ptr<Integrator> integrator;
     const ParameterFields* fields = nullptr;
+    std::string photon_map = kDefaultPhotonMap;  // of integrators that use one
 };
 
 // The integrator of the command line, or the scene's; parameters of the scene first, then the command line's.
@@ -53,12 +55,22 @@ ChosenIntegrator choose_integrator(const RenderOptions& options, SceneSettings& 
     if (from_scene) {
         const ParameterList& list = settings.integrator.parameters;
         std::vector<std::string> known = spec_names(specs_of(factory.fields));
+        if (chosen.integrator->uses_photon_map())
+            chosen.photon_map = list.get_string("photon_map", chosen.photon_map, diagnostics);
         list.find("lightsampler");  // lights are chosen by power, whichever of pbrt's samplers is named
         if (list.get_bool("regularize", false, diagnostics))
             diagnostics.unsupported(list.find("regularize")->location, "path regularization");
         known.insert(known.end(), {"lightsampler", "regularize"});
+        if (chosen.integrator->uses_photon_map()) known.emplace_back("photon_map");
         list.report_unused(fmt::format("integrator \"{}\"", chosen.name), known, diagnostics);
     }
+    if (!options.photon_map.empty()) {
+        if (!chosen.integrator->uses_photon_map())
+            throw InputError(fmt::format("error: --photon-map: integrator \"{}\" looks no photons up", chosen.name));
+        chosen.photon_map = options.photon_map;
+    }
+    if (chosen.integrator->uses_photon_map())
+        create_photon_map(chosen.photon_map);  // says what is wrong with it, early
     const std::string of_what = fmt::format("integrator \"{}\"", chosen.name);
     for (const auto& [key, value] : choice.settings) set_parameter(parameters, factory.fields, key, value, of_what);
     for (const auto& [key, value] : options.settings_of("integrator"))
@@ -154,10 +166,14 @@ int render(const RenderOptions& options) {
     const DeviceSceneHandle device_scene = device->upload(built.scene);
     Film film(*device, built.scene, crop);
     BudgetLimits limits = options.limits;
+    const bool fixed_eye_samples = chosen.integrator->fixes_eye_samples();
+    if (fixed_eye_samples) limits.passes = options.pass_limit();
     if (!limits.passes && !limits.seconds && !limits.target_error)
         limits.passes = uint64_t(built.settings.samples_per_pixel);
     if (options.replay) limits = {1, {}, {}};
     RenderSession session(*device, built.scene, device_scene, film, limits);
+    session.photon_map = chosen.photon_map;
+    if (fixed_eye_samples) session.eye_samples = options.eye_samples.value_or(1);
     session.seed = options.seed.value_or(built.settings.seed);
     session.sampler = built.settings.sampler == "independent" ? kernel::SAMPLER_INDEPENDENT : kernel::SAMPLER_SOBOL;
     if (options.replay) session.start_at(uint64_t((*options.replay)[2]));
@@ -187,6 +203,11 @@ int render(const RenderOptions& options) {
     run.resolution = {int(built.scene.width()), int(built.scene.height())};
     run.crop = crop;
     run.film = film.summary();
+    run.film.rays += session.photons.rays;
+    if (chosen.integrator->uses_photon_map()) {
+        run.photon_map = parse_plugin_choice(chosen.photon_map).name;
+        run.photons = session.photons;
+    }
     run.samples_per_pixel = double(run.film.samples) / double(film.pixel_count());
     run.progress = session.progress();
     run.phases = session.phases();

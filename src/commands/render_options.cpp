@@ -7,6 +7,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 namespace lampyris {
 namespace {
@@ -98,6 +99,7 @@ void RenderOptions::finish() {
         if (*count < 1) throw InputError("error: --spp and --passes must be at least 1");
         limits.passes = limits.passes ? std::min(*limits.passes, uint64_t(*count)) : uint64_t(*count);
     }
+    if (texts.spp) eye_samples = uint32_t(std::min<int64_t>(*texts.spp, std::numeric_limits<uint32_t>::max()));
     if (texts.target_error) {
         if (!(*texts.target_error > 0.0)) throw InputError("error: --target-error must be above 0");
         limits.target_error = texts.target_error;
@@ -122,6 +124,9 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
         ->type_name("IMAGE");
     command.add_option("--integrator", o.integrator, "Integrator in place of the scene's, with parameters")
         ->type_name("NAME[:key=value,...]");
+    command
+        .add_option("--photon-map", o.photon_map, "Photon-query structure of integrators that use one, with parameters")
+        ->type_name("NAME[:key=value,...]");
     command.add_option("--backend", o.backend, "What computes: see `lampyris devices`")
         ->capture_default_str()
         ->type_name("NAME");
@@ -131,7 +136,10 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
     command.add_option("--seed", o.seed, "Seed of the random numbers");
     command.add_option("--resolution", o.texts.resolution, "Size in place of the scene's")->type_name("WxH");
     command.add_option("--crop", o.texts.crop, "Render these pixels only (half-open)")->type_name("x0,y0,x1,y1");
-    command.add_option("--spp", o.texts.spp, "Stop after this many samples per pixel")->type_name("N");
+    command
+        .add_option("--spp", o.texts.spp,
+                    "Stop after this many samples per pixel; ppm: hit points per pixel, which stay")
+        ->type_name("N");
     command.add_option("--passes", o.texts.passes, "Stop after this many passes")->type_name("N");
     command.add_option("--time", o.texts.time, "Stop after this much rendering time: 30s, 5min, 2h")
         ->type_name("DURATION");

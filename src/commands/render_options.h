@@ -20,7 +20,9 @@ namespace lampyris {
 struct RenderOptions {
     std::string scene;
     std::vector<std::string> outputs;
-    std::string integrator;  // NAME[:key=value,...]; empty: the scene's
+    std::string integrator;               // NAME[:key=value,...]; empty: the scene's
+    std::string photon_map;               // the same
+    std::optional<uint32_t> eye_samples;  // --spp, for integrators that tell it from --passes
     std::string backend = "cpu";
     DeviceOptions device;
     std::optional<uint32_t> seed;
@@ -32,6 +34,11 @@ struct RenderOptions {
     bool skip_unsupported = false, quiet = false;
     std::optional<std::array<int, 3>> replay;  // x, y, pass
     std::vector<std::pair<std::string, std::string>> settings_of(const std::string& section) const;
+
+    // --passes alone: what integrators count that fix their eye samples.
+    std::optional<uint64_t> pass_limit() const {
+        return texts.passes ? std::optional<uint64_t>(uint64_t(*texts.passes)) : std::nullopt;
+    }
 
     // Interprets the texts below; throws InputError. Loads the plugins.
     void finish();

@@ -19,6 +19,10 @@ class Integrator {
     virtual void render(RenderSession& session) = 0;
     // The struct that `fields` of its registration describe.
     virtual void* parameters() = 0;
+    // Whether it looks photons up: with the structure of session.photon_map.
+    virtual bool uses_photon_map() const { return false; }
+    // Whether passes share one set of eye samples (--spp), and --passes alone counts passes.
+    virtual bool fixes_eye_samples() const { return false; }
 };
 
 struct IntegratorFactory {

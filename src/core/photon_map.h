@@ -138,6 +138,8 @@ struct PhotonMapFactory {
 };
 
 Registry<PhotonMapFactory>& photon_maps();
+// What integrators take where nobody says.
+inline constexpr const char* kDefaultPhotonMap = "sorted_grid";
 
 // The map that "name:key=value,..." describes. Throws InputError.
 std::unique_ptr<PhotonMap> create_photon_map(std::string_view choice);

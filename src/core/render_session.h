@@ -31,6 +31,17 @@ struct RenderProgress {
     bool finished = false;
 };
 
+// What photon mapping did, for the statistics.
+struct PhotonStatistics {
+    uint64_t emitted = 0, stored = 0, lost = 0, rays = 0;
+    double radius_initial = 0.0, radius_min = 0.0, radius_mean = 0.0,
+           radius_max = 0.0;        // of the last pass, in scene units
+    double bucket_load_mean = 0.0;  // 0: there are no buckets
+    uint32_t bucket_load_max = 0;
+    size_t map_bytes = 0;
+    std::vector<std::pair<std::string, std::string>> map_parameters;
+};
+
 class RenderSession {
  public:
     RenderSession(Device& device, const Scene& scene, DeviceSceneHandle device_scene, Film& film, BudgetLimits limits);
@@ -40,8 +51,11 @@ class RenderSession {
     const DeviceSceneHandle device_scene;
     Film& film;
     uint32_t seed = 0;
-    uint32_t sampler = 0;    // kernel::SAMPLER_*
-    uint32_t max_slice = 0;  // most passes of a slice; 0: no limit
+    uint32_t sampler = 0;      // kernel::SAMPLER_*
+    uint32_t max_slice = 0;    // most passes of a slice; 0: no limit
+    uint32_t eye_samples = 1;  // a pixel, of integrators that fix them
+    std::string photon_map;    // NAME[:key=value,...]; of integrators that use one
+    PhotonStatistics photons;
 
     // How many passes to run next, beginning with number next_pass(): 0 when the budget is spent or the user
     // interrupts. Slices last a fraction of a second where passes are that short, and end at powers of two.

@@ -44,6 +44,24 @@ Json effects_json(const Scene& scene) {
     return array;
 }
 
+Json photon_map_json(const RunRecord& run) {
+    if (!run.photon_map) return nullptr;
+    return {{"name", *run.photon_map}, {"parameters", parameters_json(run.photons.map_parameters)}};
+}
+
+Json radius_json(const RunRecord& run) {
+    if (!run.photon_map) return nullptr;
+    return {{"initial", run.photons.radius_initial},
+            {"min", run.photons.radius_min},
+            {"mean", run.photons.radius_mean},
+            {"max", run.photons.radius_max}};
+}
+
+Json bucket_load_json(const RunRecord& run) {
+    if (!run.photon_map || run.photons.bucket_load_max == 0) return nullptr;
+    return {{"mean", run.photons.bucket_load_mean}, {"max", run.photons.bucket_load_max}};
+}
+
 }  // namespace
 
 size_t peak_resident_bytes() {
@@ -65,7 +83,7 @@ nlohmann::ordered_json statistics_json(const RunRecord& run, const Scene& scene)
         {"scene", run.scene},
         {"scene_hash", fmt::format("{:016x}", scene.hash)},
         {"integrator", {{"name", run.integrator}, {"parameters", parameters_json(run.integrator_parameters)}}},
-        {"photon_map", nullptr},
+        {"photon_map", photon_map_json(run)},
         {"backend", run.backend},
         {"device", run.device},
         {"threads", run.threads},
@@ -87,14 +105,16 @@ nlohmann::ordered_json statistics_json(const RunRecord& run, const Scene& scene)
           {"compile", run.device_statistics.compile_s}}},
         {"rays", run.film.rays},
         {"samples", run.film.samples},
-        {"photons_emitted", 0},
-        {"photons_stored", 0},
+        {"photons_emitted", run.photons.emitted},
+        {"photons_stored", run.photons.stored},
+        {"photons_lost", run.photons.lost},
+        {"photon_map_bytes", run.photons.map_bytes},
         {"peak_memory_bytes", peak_resident_bytes()},
         {"device_memory_bytes", run.device_statistics.peak_memory_bytes},
         {"estimated_error", number(run.progress.estimated_error)},
         {"effects", effects_json(scene)},
-        {"radius", nullptr},
-        {"bucket_load", nullptr},
+        {"radius", radius_json(run)},
+        {"bucket_load", bucket_load_json(run)},
         {"non_finite_samples", run.film.non_finite},
         {"unsupported", scene.unsupported},
         {"notes", scene.notes},
@@ -117,6 +137,7 @@ std::map<std::string, std::string> image_metadata(const RunRecord& run, const Sc
             {"lampyris.scene_hash", fmt::format("{:016x}", scene.hash)},
             {"lampyris.integrator", run.integrator},
             {"lampyris.parameters", parameters},
+            {"lampyris.photon_map", run.photon_map.value_or("")},
             {"lampyris.backend", run.backend},
             {"lampyris.device", run.device},
             {"lampyris.seed", std::to_string(run.seed)},

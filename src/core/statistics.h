@@ -30,6 +30,8 @@ struct RunRecord {
     std::string scene;
     std::string integrator;
     std::vector<std::pair<std::string, std::string>> integrator_parameters;
+    std::optional<std::string> photon_map;  // of integrators that use one, and
+    PhotonStatistics photons;               // what it did
     std::string backend, device;
     unsigned threads = 0;
     uint32_t seed = 0;

@@ -3,6 +3,7 @@
 
 #include "core/film.h"
 #include "core/integrator.h"
+#include "core/photon_map.h"
 #include "core/scene/build.h"
 
 #include <cstdint>
@@ -21,6 +22,7 @@ struct RenderSettings {
     std::optional<std::array<int, 2>> resolution;
     std::optional<std::string> sampler;  // in place of the scene's: "independent", "sobol"
     std::string integrator;              // "name:key=value"; empty: the scene's
+    std::string photon_map = kDefaultPhotonMap;
     std::map<std::string, std::string> device_settings;
     std::optional<std::array<int, 4>> crop;
     uint32_t first_pass = 0;

@@ -222,7 +222,7 @@ struct CameraRecord {
 struct SceneRecord {
     CameraRecord camera;
     uvec4
-        lights;  // number of lights, number of infinite ones, offset of the choosing CDF in `distributions` (count + 1 floats), unused
+        lights;  // number of lights, number of infinite ones, offset of the choosing CDF in `distributions` (count + 1 floats), luminous power of all (a float's bits, W)
     uvec4 counts;  // geometries, instances, root node of the top-level BVH, effects that the scene calls for
     vec4 bounds;   // world's bounding sphere: centre, radius
 };

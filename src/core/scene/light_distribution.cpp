@@ -1,6 +1,7 @@
 #include "core/scene/light_distribution.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <stdexcept>
 
@@ -80,6 +81,7 @@ void choose_lights(Scene& scene, std::span<const float> powers) {
     }
     const uint32_t offset = append_cdf(weights, scene.distributions);
     scene.record.lights.z = offset;
+    scene.record.lights.w = std::bit_cast<uint32_t>(float(sum));
     for (size_t i = 0; i < scene.lights.size(); ++i) {
         scene.lights[i].emission.w = scene.distributions[offset + i + 1] - scene.distributions[offset + i];
     }

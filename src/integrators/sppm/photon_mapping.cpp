@@ -1,0 +1,246 @@
+#include "integrators/sppm/photon_mapping.h"
+
+#include "core/error.h"
+#include "integrators/sppm/sppm_host.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace lampyris {
+namespace {
+
+constexpr const char* kEye = "integrators/sppm/sppm_eye.kernel.h";
+constexpr const char* kRadius = "integrators/sppm/sppm_radius.kernel.h";
+constexpr const char* kPhotons = "integrators/sppm/sppm_photons.kernel.h";
+constexpr const char* kResolve = "integrators/sppm/sppm_resolve.kernel.h";
+constexpr const char* kConsumer = "integrators/sppm/sppm.consumer.h";
+
+// The inverse of ordered_bits (sppm_radius.kernel.h).
+float from_ordered_bits(uint32_t bits) {
+    return std::bit_cast<float>((bits & 0x80000000u) != 0u ? bits & 0x7fffffffu : ~bits);
+}
+
+using Counters = std::array<uint32_t, kernel::SPPM_COUNTERS>;
+
+class PhotonMapping {
+ public:
+    PhotonMapping(RenderSession& session, const SppmParams& params, uint32_t eye_samples)
+        : session_(session),
+          device_(session.device),
+          params_(params),
+          fixed_(eye_samples > 0),
+          points_(std::max(eye_samples, 1u)),
+          pixels_(session.film.pixel_count()) {
+        const uint64_t points = uint64_t(points_) * pixels_;
+        if (points > std::numeric_limits<uint32_t>::max())
+            throw InputError(fmt::format("error: {} hit points are more than 2^32; take fewer --spp", points));
+        paths_ = params.photonsperiteration > 0 ? uint32_t(params.photonsperiteration)
+                                                : session.scene.width() * session.scene.height();
+        capacity_ = params.store > 0 ? uint32_t(params.store)
+                                     : uint32_t(std::clamp<uint64_t>(4 * uint64_t(paths_), 65536, 1u << 30));
+        // Keys tell bounces apart; a part has so few paths that they do not overflow.
+        bounces_ = uint32_t(params.maxdepth) + 1;
+        part_ = std::max(1u, std::min(paths_, std::numeric_limits<uint32_t>::max() / bounces_));
+        const uint32_t effects = session.scene.effects.mask();
+        eye_ = device_.compile(kEye, effects);
+        radius_ = device_.compile(kRadius, 0);
+        photons_ = device_.compile(kPhotons, effects);
+        resolve_ = device_.compile(kResolve, effects);
+        window_ = device_.create_buffer(sizeof(kernel::FilmWindow), "film window");
+        params_buffer_ = argument_buffer(device_, params_, "parameters");
+        pass_buffer_ = device_.create_buffer(sizeof(kernel::SppmPass), "pass");
+        counters_ = device_.create_buffer(sizeof(Counters), "counters");
+        hits_ = device_.create_buffer(points * sizeof(kernel::SppmHit), "hit points");
+        queries_ = device_.create_buffer(points * sizeof(glm::vec4), "places of hit points");
+        gathered_ = device_.create_buffer(points * sizeof(glm::vec4), "gathered flux");
+        statistics_ = device_.create_buffer(points * sizeof(glm::vec2), "photon statistics");
+        store_ = device_.create_buffer(size_t(capacity_) * sizeof(kernel::PhotonRecord), "photons");
+        const std::vector<glm::vec2> initial(points, glm::vec2(1.0f, 0.0f));
+        statistics_->upload(initial.data(), initial.size() * sizeof(glm::vec2));
+        map_ = create_photon_map(session.photon_map);
+        map_->open(device_);
+        consumer_ = {kConsumer, effects, session.device_scene.get(), {hits_, gathered_}};
+        map_->prepare(consumer_);
+    }
+
+    void render() {
+        if (session_.next_pass() > 0 && (fixed_ || params_.schedule == kernel::SPPM_SHARED))
+            throw InputError(
+                "error: with fixed hit points or schedule=shared a pass depends on those before it, and cannot be "
+                "rendered alone; take sppm with schedule=memoryless");
+        while (const uint32_t count = session_.next_passes()) {
+            for (uint32_t i = 0; i < count; ++i) one_pass(session_.next_pass() + i);
+            session_.passes_finished(count);
+        }
+        finish();
+    }
+
+ private:
+    void one_pass(uint64_t pass) {
+        pass_.photons = {0, capacity_, uint32_t(pass), session_.seed};
+        pass_.counts = {paths_, session_.sampler, points_, bounces_};
+        pass_.scale.x = float(memoryless_scale(pass, double(params_.alpha)));
+        const Counters zero{};
+        counters_->upload(&zero, sizeof zero);
+        pass_buffer_->upload(&pass_, sizeof pass_);
+        if (!fixed_ || !followed_) follow_eye_paths(pass);
+        run(kRadius, *radius_, "eye_pass",
+            std::array{params_buffer_, pass_buffer_, hits_, queries_, statistics_, gathered_, counters_},
+            points_ * pixels_);
+        const Counters box = download_counters();
+        for (int c = 0; c < 3; ++c) {
+            pass_.low[c] = from_ordered_bits(~box[kernel::SPPM_LOW + uint32_t(c)]);
+            pass_.high[c] = from_ordered_bits(box[kernel::SPPM_HIGH + uint32_t(c)]);
+        }
+        largest_radius_ = std::bit_cast<float>(box[kernel::SPPM_RADIUS]);
+        // No eye path ends where photons would be of use: there is nothing to emit them for.
+        if (box[kernel::SPPM_RADIUS] > 0) photon_pass();
+        run(kResolve, *resolve_, "resolve",
+            std::array{window_, params_buffer_, session_.film.buffer(), pass_buffer_, hits_, queries_, gathered_,
+                       statistics_},
+            pixels_);
+    }
+
+    void follow_eye_paths(uint64_t pass) {
+        const kernel::FilmWindow window{session_.film.window(),
+                                        {fixed_ ? 0u : uint32_t(pass), points_, session_.seed, session_.sampler}};
+        window_->upload(&window, sizeof window);
+        run(kEye, *eye_, "eye_pass", std::array{window_, params_buffer_, session_.film.buffer(), hits_, queries_},
+            pixels_);
+        followed_ = true;
+    }
+
+    // Emits the pass's paths in parts whose photons fit into the store, and gathers each.
+    void photon_pass() {
+        for (uint32_t first = 0; first < paths_;) {
+            const uint32_t count = std::min(part_, paths_ - first);
+            pass_.photons.x = first;
+            pass_.photons.y = capacity_;
+            pass_buffer_->upload(&pass_, sizeof pass_);
+            const uint32_t none[2] = {0, 0};
+            counters_->upload(none, sizeof none);
+            run(kPhotons, *photons_, "photon_tracing", std::array{pass_buffer_, params_buffer_, store_, counters_},
+                count);
+            const Counters counters = download_counters();
+            const uint32_t stored = counters[kernel::SPPM_STORED];
+            session_.photons.rays += counters[kernel::SPPM_RAYS];
+            if (stored > capacity_) {
+                make_room(count, stored);  // and trace this part again
+                continue;
+            }
+            session_.photons.emitted += count;
+            session_.photons.stored += stored;
+            first += count;
+            if (stored > 0) gather(stored);
+        }
+    }
+
+    void make_room(uint32_t count, uint32_t stored) {
+        if (count > 1) {
+            part_ = std::max(1u, count / 2);
+            return;
+        }
+        capacity_ = stored;
+        store_.reset();
+        store_ = device_.create_buffer(size_t(capacity_) * sizeof(kernel::PhotonRecord), "photons");
+    }
+
+    void gather(uint32_t stored) {
+        PhotonSet set;
+        set.photons = store_;
+        set.count = stored;
+        set.queries = queries_;
+        set.query_count = points_ * pixels_;
+        set.radius = largest_radius_;
+        set.low = glm::vec3(pass_.low);
+        set.high = glm::vec3(pass_.high);
+        set.seed = session_.seed;
+        set.pass = pass_.photons.z * 0x9e3779b9u + pass_.photons.x;  // each part has its own grid
+        set.mean_power = std::bit_cast<float>(session_.scene.record.lights.w) / float(paths_);
+        map_->build(set);
+        map_->gather(consumer_, queries_, 0, points_ * pixels_);
+    }
+
+    // Adds what the kernel took (by timestamps, on Vulkan) to a phase.
+    template <size_t n>
+    void run(const char* file, const Kernel& kernel, const char* phase, const std::array<BufferHandle, n>& buffers,
+             uint32_t count) {
+        const double before = kernel_seconds(file);
+        device_.run(kernel, session_.device_scene.get(), buffers, 0, count);
+        session_.add_phase(phase, kernel_seconds(file) - before);
+    }
+    double kernel_seconds(const char* file) const {
+        const std::map<std::string, double> seconds = device_.statistics().kernel_s;
+        const auto found = seconds.find(file);
+        return found == seconds.end() ? 0.0 : found->second;
+    }
+
+    Counters download_counters() const {
+        Counters counters{};
+        counters_->download(&counters, sizeof counters);
+        return counters;
+    }
+
+    void finish() {
+        const PhotonMapStatistics statistics = map_->statistics();
+        session_.add_phase("construction", statistics.construction_kernel_s);
+        session_.add_phase("gathering", statistics.gathering_kernel_s);
+        PhotonStatistics& photons = session_.photons;
+        photons.map_parameters = show_photon_map(parse_plugin_choice(session_.photon_map).name, *map_);
+        photons.map_bytes = map_->memory_bytes();
+        photons.lost = statistics.lost_photons;
+        if (const auto load = map_->bucket_load())
+            photons.bucket_load_mean = load->mean, photons.bucket_load_max = load->max;
+        std::vector<glm::vec4> places(size_t(points_) * pixels_);
+        queries_->download(places.data(), places.size() * sizeof(glm::vec4));
+        std::vector<kernel::SppmHit> hits(places.size());
+        hits_->download(hits.data(), hits.size() * sizeof(kernel::SppmHit));
+        double sum = 0.0, initial = 0.0;
+        size_t count = 0;
+        photons.radius_min = std::numeric_limits<double>::infinity();
+        for (size_t i = 0; i < places.size(); ++i) {
+            if (places[i].w < 0.0f) continue;
+            const double radius = double(places[i].w);
+            sum += radius, initial += double(hits[i].radiance.w), ++count;
+            photons.radius_min = std::min(photons.radius_min, radius);
+            photons.radius_max = std::max(photons.radius_max, radius);
+        }
+        photons.radius_mean = count ? sum / double(count) : 0.0;
+        photons.radius_initial = count ? initial / double(count) : 0.0;
+        if (!count) photons.radius_min = 0.0;
+    }
+
+    RenderSession& session_;
+    Device& device_;
+    const SppmParams params_;
+    const bool fixed_;
+    const uint32_t points_;  // hit points a pixel
+    const uint32_t pixels_;
+    uint32_t paths_ = 0, part_ = 0, bounces_ = 0, capacity_ = 0;
+    bool followed_ = false;
+    float largest_radius_ = 0;
+    kernel::SppmPass pass_{};
+    KernelHandle eye_, radius_, photons_, resolve_;
+    BufferHandle window_, params_buffer_, pass_buffer_, counters_, hits_, queries_, gathered_, statistics_, store_;
+    std::unique_ptr<PhotonMap> map_;
+    PhotonConsumer consumer_;
+};
+
+}  // namespace
+
+double memoryless_scale(uint64_t pass, double alpha) {
+    // Gamma(pass + 1 + alpha) / (Gamma(pass + 2) Gamma(1 + alpha)): the product in closed form.
+    const double n = double(pass);
+    return std::exp(std::lgamma(n + 1.0 + alpha) - std::lgamma(n + 2.0) - std::lgamma(1.0 + alpha));
+}
+
+void render_photon_mapping(RenderSession& session, const SppmParams& params, uint32_t eye_samples) {
+    PhotonMapping(session, params, eye_samples).render();
+}
+
+}  // namespace lampyris

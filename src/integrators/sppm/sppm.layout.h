@@ -1,0 +1,40 @@
+// What the kernels of progressive photon mapping share: hit points, what they gather, and what a pass is.
+#ifndef LAMPYRIS_SPPM_LAYOUT
+#define LAMPYRIS_SPPM_LAYOUT
+
+// Where an eye path stopped: the ray and the primitive that it met, from which the surface is found again, so that a record is
+// short and the gather kernel traces nothing. Its place and radius are in `queries`.
+struct SppmHit {
+    uvec4 origin;     // of the last ray (floats' bits); w: instance
+    uvec4 direction;  // floats' bits; w: geometry
+    vec4 throughput;  // rgb; w: weight of the pixel filter
+    vec4 radiance;    // rgb: found on the way, and direct light at the hit point; w: radius of the first pass
+    uvec4 more;       // primitive, least radius (bits)
+};
+
+struct SppmPass {
+    uvec4 photons;  // first path of this part, photons that fit, pass, seed
+    uvec4 counts;   // paths emitted in the pass, sampler kind, hit points a pixel, bounces that keys tell apart
+    vec4 low;       // photons are kept within this box
+    vec4 high;
+    vec4 scale;  // x: squared radius over that of the first pass, where passes have the same one (memoryless)
+};
+
+// Words of `counters`.
+CONST uint SPPM_STORED = 0u;  // photons, also those that did not fit
+CONST uint SPPM_RAYS = 1u;
+// The box of the hit points, padded by their radii: of the lower corner the complement, so that zero is less than anything.
+CONST uint SPPM_LOW = 2u;
+CONST uint SPPM_HIGH = 5u;
+CONST uint SPPM_RADIUS = 8u;  // the largest (bits)
+CONST uint SPPM_COUNTERS = 12u;
+
+// Photons that arrive flatter than this count as if they did not: |wi.Ns| / |wi.Ng| has no bound.
+CONST float GRAZING_COSINE = 1e-2f;
+
+CONST uint SPPM_SHARED = 0u;
+CONST uint SPPM_MEMORYLESS = 1u;
+CONST uint SPPM_DIRECT_NEE = 0u;
+CONST uint SPPM_DIRECT_PHOTONS = 1u;
+
+#endif

@@ -1,0 +1,99 @@
+// Photon pass: emits a path and keeps a photon wherever an eye path would gather.
+// clang-format off
+#define KERNEL_CPU_VARIANTS kAllEffects, kTexturedEffects, kGlassEffects
+// clang-format on
+#include "core/kernel/scene.h"
+
+#include "core/kernel/photon_layout.h"
+#include "core/kernel/photon.h"
+#include "core/kernel/visible_point.h"
+#include "integrators/sppm/sppm.layout.h"
+#include "integrators/sppm/sppm.params.h"
+
+BUFFER_RO(0, SppmPass, passes)
+BUFFER_RO(1, SppmParams, params)
+BUFFER_RW(2, PhotonRecord, photons)
+BUFFER_RW(3, uint, counters)
+
+CONST uint PHOTON_VERTEX_DIMENSIONS = 4u;
+CONST uint PHOTON_STREAM = 0x5f3759dfu;  // keeps the numbers apart from those of pixels
+
+FN bool in_box(vec3 p, vec4 low, vec4 high) {
+    return p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y && p.z <= high.z;
+}
+
+FN void keep_photon(vec3 position, vec3 direction, vec3 power, uint key) {
+    uint at = ATOMIC_ADD_U32(counters[SPPM_STORED], 1u);
+    if (at < passes[0].photons.y) photons[at] = photon_pack(position, direction, power, key);
+}
+
+KERNEL(sppm_photons) {
+    SppmPass pass = passes[0];
+    uint path = pass.photons.x + index;
+    // Paths of one pass are a stratified set: the path is the sample, the pass takes the pixel's place.
+    Sampler numbers = sampler_begin(pass.photons.z, path, pass.photons.w ^ PHOTON_STREAM, pass.counts.y);
+    float u_choice = 0.0f;
+    if (scene[0].lights.x > 1u) u_choice = sample_1d_at(numbers, 0u);
+    Emission start;
+    if (!emit_photon(u_choice, sample_1d_at(numbers, 1u), sample_2d_at(numbers, 2u), sample_2d_at(numbers, 4u), start))
+        return;
+    vec3 origin = start.origin;
+    vec3 direction = start.direction;
+    vec3 power = start.power / float(pass.counts.x);
+    uint rays = 0u;
+    int depth = 0;
+    uint passed = 0u;
+    bool alive = true;
+    while (alive) {
+        alive = false;
+        Surface s;
+        if (!intersect_scene(origin, direction, s, rays)) break;
+        if (HAS(EFFECT_INTERFACE) && is_interface(s)) {
+            origin = offset_origin(s.position, s.error, s.ng, direction);
+            if (++passed > MAX_PASSED_SURFACES) {
+                REPORT_UNFINISHED();
+                break;
+            }
+            alive = true;
+            continue;
+        }
+        vec3 ng = s.ng;
+        Frame frame;
+        Bsdf bsdf = material_bsdf(s, -direction, frame);
+        bool direct = depth == 0;
+        if (visible_action(bsdf, params[0].glossy) != VISIBLE_FOLLOW &&
+            (!direct || params[0].direct == SPPM_DIRECT_PHOTONS) && in_box(s.position, pass.low, pass.high))
+            keep_photon(s.position, direction, power, photon_key(index, uint(depth), pass.counts.w));
+        if (depth >= params[0].maxdepth) break;
+        uint dimension = EMISSION_DIMENSIONS + uint(depth) * PHOTON_VERTEX_DIMENSIONS;
+        depth += 1;
+
+        // wo is where the light comes from: importance flows as a camera's path does.
+        vec3 wo = to_local(frame, -direction);
+        BsdfSample next;
+        float u_lobe = 0.0f;
+        if (bsdf_chooses_lobe(bsdf)) u_lobe = sample_1d_at(numbers, dimension);
+        if (!bsdf_sample(bsdf, wo, u_lobe, sample_2d_at(numbers, dimension + 1u), TRANSPORT_IMPORTANCE, next)) break;
+        vec3 onward = unit(to_world(frame, next.wi));
+        // Shading normals are not symmetric (Veach 1997, equation 5.19): |wi.Ns wo.Ng| / (|wi.Ng| |wo.Ns|), of which |wo.Ns|
+        // cancels the cosine of the weight. wi is towards the light, wo onward.
+        float towards = abs_dot(direction, ng);
+        if (!(towards > 0.0f)) break;
+        vec3 weight = next.f * (abs(wo.z) * abs_dot(onward, ng) / (towards * next.pdf));
+        float before = max_component(power);
+        power *= weight;
+        float after = max_component(power);
+        if (!(after > 0.0f) || !is_finite(after)) break;
+        // Photons keep about the power that they had: few, bright ones would be noise.
+        float survival = after / before;
+        if (survival < 1.0f) {
+            if (sample_1d_at(numbers, dimension + 3u) >= survival) break;
+            power = power / survival;
+        }
+        direction = onward;
+        origin = offset_origin(s.position, s.error, ng, direction);
+        alive = true;
+    }
+    if (alive) REPORT_UNFINISHED();  // the driver ended the loop
+    ATOMIC_ADD_U32(counters[SPPM_RAYS], rays);
+}

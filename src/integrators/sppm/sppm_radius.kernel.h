@@ -1,0 +1,42 @@
+// Gives each hit point the radius of this pass, clears what it gathers, and finds the box in which photons are of use.
+#include "core/kernel/prelude.h"
+#include "core/kernel/layout.h"
+#include "core/kernel/math.h"
+#include "integrators/sppm/sppm.layout.h"
+#include "integrators/sppm/sppm.params.h"
+
+BUFFER_RO(0, SppmParams, params)
+BUFFER_RO(1, SppmPass, passes)
+BUFFER_RO(2, SppmHit, hits)
+BUFFER_RW(3, vec4, queries)
+BUFFER_RO(4, vec2, statistics)
+BUFFER_RW(5, vec4, gathered)
+BUFFER_RW(6, uint, counters)
+
+// Floats as integers in the same order.
+FN uint ordered_bits(float x) {
+    uint bits = floatBitsToUint(x);
+    return (bits & 0x80000000u) != 0u ? ~bits : bits | 0x80000000u;
+}
+
+// Most hit points change nothing: look before asking for the cache line.
+FN void raise(uint counter, uint value) {
+    if (value > counters[counter]) ATOMIC_MAX_U32(counters[counter], value);
+}
+
+KERNEL(sppm_radius) {
+    gathered[index] = vec4(0.0f);
+    vec4 q = queries[index];
+    if (q.w < 0.0f) return;
+    float scale = params[0].schedule == SPPM_MEMORYLESS ? passes[0].scale.x : statistics[index].x;
+    q.w = max(hits[index].radiance.w * sqrt(scale), uintBitsToFloat(hits[index].more.y));
+    queries[index] = q;
+    float reach = q.w * 1.00001f;
+    raise(SPPM_LOW, ~ordered_bits(q.x - reach));
+    raise(SPPM_LOW + 1u, ~ordered_bits(q.y - reach));
+    raise(SPPM_LOW + 2u, ~ordered_bits(q.z - reach));
+    raise(SPPM_HIGH, ordered_bits(q.x + reach));
+    raise(SPPM_HIGH + 1u, ordered_bits(q.y + reach));
+    raise(SPPM_HIGH + 2u, ordered_bits(q.z + reach));
+    raise(SPPM_RADIUS, floatBitsToUint(q.w));
+}

@@ -1,0 +1,47 @@
+// Ends a pass: what was gathered becomes radiance and a sample of the film, and radii shrink.
+#include "core/kernel/scene.h"
+
+#include "core/kernel/film.h"
+#include "core/kernel/photon.h"
+#include "integrators/sppm/sppm.layout.h"
+#include "integrators/sppm/sppm.params.h"
+
+BUFFER_RO(0, FilmWindow, window)
+BUFFER_RO(1, SppmParams, params)
+BUFFER_RW(2, FilmPixel, film)
+BUFFER_RO(3, SppmPass, passes)
+BUFFER_RO(4, SppmHit, hits)
+BUFFER_RO(5, vec4, queries)
+BUFFER_RO(6, vec4, gathered)
+BUFFER_RW(7, vec2, statistics)  // x: squared radius over that of the first pass; y: photons kept so far (N)
+
+// The scale of the squared radius after M more photons (Hachisuka et al. 2008, equation 7): R'^2 = R^2 (N + a M) / (N + M).
+FN vec2 shrink(vec2 statistic, float found) {
+    if (!(found > 0.0f)) return statistic;
+    float kept = statistic.y + params[0].alpha * found;
+    return vec2(statistic.x * (kept / (statistic.y + found)), kept);
+}
+
+KERNEL(sppm_resolve) {
+    FilmWindow w = window[0];
+    uint pixels = w.pixels.z * w.pixels.w;
+    FilmPixel pixel = film[index];
+    uint i = 0u;
+    uint count = passes[0].counts.z;
+    for (; i < count; ++i) {
+        uint at = i * pixels + index;
+        SppmHit hit = hits[at];
+        vec3 radiance = vec3(hit.radiance);
+        vec4 q = queries[at];
+        if (q.w >= 0.0f) {
+            vec4 sum = gathered[at];
+            // Summing flux over area pass by pass is the shared-statistics estimate tau / (pi R^2), without its rescaling:
+            // tau_n / R_n^2 = sum of Phi_i / R_i^2.
+            radiance += vec3(hit.throughput) * vec3(sum) * (1.0f / (PI * max(q.w * q.w, SMALLEST_RADIUS_SQUARED)));
+            statistics[at] = shrink(statistics[at], sum.w);
+        }
+        film_add(pixel, film_sensor(radiance), hit.throughput.w, passes[0].photons.z);
+    }
+    if (i < count) REPORT_UNFINISHED();
+    film[index] = pixel;
+}

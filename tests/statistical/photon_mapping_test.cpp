@@ -1,0 +1,214 @@
+// Progressive photon mapping where the answer is known: closed forms, path-traced references, and itself under other settings.
+//
+// The spread of the mean over seeds is the error of a mean. False alarms: each z-test has a rate of 1e-6, at fixed seeds. What a
+// radius blurs is allowed for where it is said so.
+#include "core/image/image_io.h"
+#include "support/render.h"
+#include "support/statistics.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace lampyris::test {
+namespace {
+
+constexpr double kAlpha = 1e-6;
+const std::string kScenes = std::string(LAMPYRIS_SOURCE_DIR) + "/scenes/";
+
+RenderSettings settings_of(const std::string& backend, const std::string& integrator, uint32_t passes, int size) {
+    RenderSettings s;
+    s.backend = backend;
+    s.integrator = integrator;
+    s.samples = passes;
+    if (size) s.resolution = {size, size};
+    return s;
+}
+
+// The mean luminance of renderings with different seeds.
+Mean mean_of_runs(const std::string& file, RenderSettings settings, int runs) {
+    Mean mean;
+    for (int i = 0; i < runs; ++i) {
+        settings.seed = uint32_t(100 + i);
+        mean.add(render_file(kScenes + file, settings).mean_luminance());
+    }
+    return mean;
+}
+
+void expect_mean(const Mean& mean, double expected, double tolerance) {
+    EXPECT_LT(std::abs(mean.value() - expected), normal_threshold(kAlpha) * mean.error() + tolerance)
+        << mean.value() << " +- " << mean.error();
+}
+
+double largest_difference(const Rendered& a, const Rendered& b) {
+    double largest = 0.0;
+    for (int y = 0; y < a.height; ++y)
+        for (int x = 0; x < a.width; ++x)
+            largest = std::max(largest, std::abs(a.luminance(x, y) - b.luminance(x, y)) / (a.luminance(x, y) + 0.01));
+    return largest;
+}
+
+std::string name_of(std::string text) {
+    for (char& c : text)
+        if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+    return text;
+}
+
+class PhotonMapping : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Backends, PhotonMapping, testing::ValuesIn(usable_backends()),
+                         [](const auto& info) { return name_of(info.param); });
+
+// A closed box of albedo 1/2 whose walls emit 1 shows 2 everywhere. A disk that reaches past an edge trades a part of its own
+// wall for a part of the next: 1 % is allowed for that.
+TEST_P(PhotonMapping, FillsAClosedBox) {
+    for (const char* direct : {"nee", "photons"}) {
+        SCOPED_TRACE(direct);
+        const std::string integrator =
+            fmt::format("sppm:maxdepth=64,radius=0.02,photonsperiteration=20000,schedule=memoryless,direct={}", direct);
+        const Mean mean = mean_of_runs("analytic/box-half.pbrt", settings_of(GetParam(), integrator, 4, 16), 8);
+        expect_mean(mean, 2.0, 0.02);
+        EXPECT_LT(mean.error(), 0.02);
+    }
+}
+
+// A unit sphere of albedo 1/2 with a point light of intensity pi in its middle shows 1 from inside. A ball about a point of the
+// sphere cuts out a cap of area pi r^2 exactly: nothing is allowed for the radius.
+TEST_P(PhotonMapping, FillsASphere) {
+    for (const char* direct : {"nee", "photons"}) {
+        SCOPED_TRACE(direct);
+        const std::string integrator =
+            fmt::format("sppm:maxdepth=64,radius=0.05,photonsperiteration=20000,schedule=memoryless,direct={}", direct);
+        const Mean mean = mean_of_runs("analytic/sphere-point.pbrt", settings_of(GetParam(), integrator, 4, 16), 8);
+        expect_mean(mean, 1.0, 1e-4);
+        EXPECT_LT(mean.error(), 0.01);
+    }
+}
+
+// Backends follow the same paths and sum in the same order.
+TEST_P(PhotonMapping, GivesTheSameImageOnEveryBackend) {
+    for (const char* integrator : {"sppm:maxdepth=12", "ppm:maxdepth=12"}) {
+        SCOPED_TRACE(integrator);
+        const Rendered cpu = render_file(kScenes + "reference/sds-lamp.pbrt", settings_of("cpu", integrator, 2, 64));
+        const Rendered here =
+            render_file(kScenes + "reference/sds-lamp.pbrt", settings_of(GetParam(), integrator, 2, 64));
+        size_t equal = 0;
+        for (size_t i = 0; i < cpu.pixels.size(); ++i) equal += cpu.pixels[i].sum == here.pixels[i].sum;
+        // A photon that takes another way at an edge changes the hit points around it: the share of docs/determinism.md.
+        EXPECT_GE(double(equal), 0.999 * double(cpu.pixels.size()));
+    }
+}
+
+// Effects, lights and cameras, against path tracing by pbrt: the mean of the picture. What a radius blurs at edges and caustics
+// nearly averages out; 1 % is allowed for it.
+struct Case {
+    const char* name;
+    const char* options;
+};
+class PhotonMappingReference : public testing::TestWithParam<Case> {};
+INSTANTIATE_TEST_SUITE_P(Scenes, PhotonMappingReference,
+                         testing::Values(Case{"diffuse", ""}, Case{"diffuse", ",direct=photons"},
+                                         Case{"conductor-smooth", ""}, Case{"conductor-rough", ""},
+                                         Case{"conductor-rough", ",direct=photons"}, Case{"dielectric-smooth", ""},
+                                         Case{"dielectric-rough", ""}, Case{"coated-diffuse", ""},
+                                         Case{"coated-diffuse", ",direct=photons"}, Case{"thin-dielectric", ""},
+                                         Case{"diffuse-transmission", ""},
+                                         Case{"diffuse-transmission", ",direct=photons"}, Case{"point-spot", ""},
+                                         Case{"distant", ""}, Case{"instances", ""}, Case{"thin-lens", ""},
+                                         Case{"orthographic", ""}, Case{"textures", ""}),
+                         [](const auto& info) { return name_of(std::string(info.param.name) + info.param.options); });
+
+TEST_P(PhotonMappingReference, AgreesWithPathTracing) {
+    const std::string file = std::string("reference/") + GetParam().name;
+    const std::string integrator = std::string("sppm:maxdepth=12,schedule=memoryless") + GetParam().options;
+    const Mean mean = mean_of_runs(file + ".pbrt", settings_of("cpu", integrator, 12, 0), 4);
+    Mean reference;
+    const Image image = read_image(kScenes + file + ".exr");
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x)
+            reference.add(0.2126 * double(image.at(x, y, 0)) + 0.7152 * double(image.at(x, y, 1)) +
+                          0.0722 * double(image.at(x, y, 2)));
+    // Of four runs the error is known to a third only (t distribution of 3 degrees of freedom): a floor of 0.2 %.
+    const double error = std::max(mean.error(), 0.002 * reference.value());
+    EXPECT_LT(std::abs(mean.value() - reference.value()), normal_threshold(kAlpha) * error + 0.01 * reference.value())
+        << mean.value() << " +- " << mean.error() << " against " << reference.value();
+    EXPECT_LT(mean.error(), 0.01 * reference.value());
+}
+
+// Every structure that finds all photons gives the image of brute force; stochastic hashing gives its mean.
+TEST(PhotonMappingStructures, AllGiveTheSameImage) {
+    RenderSettings s = settings_of("cpu", "sppm:maxdepth=12,schedule=memoryless,photonsperiteration=4000", 2, 48);
+    s.photon_map = "brute_force";
+    const Rendered truth = render_file(kScenes + "reference/sds-lamp.pbrt", s);
+    for (const std::string& name : photon_maps().names()) {
+        SCOPED_TRACE(name);
+        s.photon_map = name;
+        if (!create_photon_map(name)->capabilities().exact) continue;
+        const Rendered image = render_file(kScenes + "reference/sds-lamp.pbrt", s);
+        EXPECT_LT(largest_difference(truth, image), 1e-4);
+    }
+}
+
+TEST(PhotonMappingStructures, StochasticHashingIsRightInTheMean) {
+    RenderSettings s = settings_of("cpu", "sppm:maxdepth=12,schedule=memoryless", 8, 64);
+    const Mean exact = mean_of_runs("reference/sds-lamp.pbrt", s, 6);
+    for (const char* map : {"stochastic_hash", "stochastic_hash:slots=2", "stochastic_hash:selection=flux",
+                            "stochastic_hash:selection=race", "stochastic_hash:table_size=0.0625"}) {
+        SCOPED_TRACE(map);
+        s.photon_map = map;
+        const Mean mean = mean_of_runs("reference/sds-lamp.pbrt", s, 6);
+        expect_mean(mean, exact.value(), normal_threshold(kAlpha) * exact.error());
+        EXPECT_LT(mean.error(), 0.02 * exact.value());
+    }
+}
+
+// Same seed, same image, however many threads there are; only the race for buckets is left to chance.
+TEST(PhotonMappingDeterminism, ThreadsChangeNothing) {
+    for (const std::string map : {"sorted_grid", "linked_list", "splat", "stochastic_hash"}) {
+        for (const char* integrator : {"sppm", "ppm", "sppm:schedule=memoryless,direct=photons"}) {
+            SCOPED_TRACE(map + ", " + integrator);
+            RenderSettings s = settings_of("cpu", integrator, 3, 48);
+            s.photon_map = map;
+            s.threads = 1;
+            const Rendered one = render_file(kScenes + "reference/sds-lamp.pbrt", s);
+            for (const unsigned threads : {2u, 7u}) {
+                s.threads = threads;
+                const Rendered many = render_file(kScenes + "reference/sds-lamp.pbrt", s);
+                EXPECT_EQ(one.image.pixels, many.image.pixels) << threads << " threads";
+            }
+        }
+    }
+}
+
+// A store that is too small is filled several times; nothing is dropped.
+TEST(PhotonMappingStore, PartsAddUp) {
+    const std::string integrator = "sppm:maxdepth=12,photonsperiteration=20000";
+    const Rendered whole = render_file(kScenes + "reference/sds-lamp.pbrt", settings_of("cpu", integrator, 3, 48));
+    for (const char* store : {"7000", "500"}) {
+        const Rendered parts =
+            render_file(kScenes + "reference/sds-lamp.pbrt", settings_of("cpu", integrator + ",store=" + store, 3, 48));
+        EXPECT_LT(largest_difference(whole, parts), 1e-4) << store;
+    }
+}
+
+// A point light in a ball of glass: a path tracer sees the light's surroundings black, photons light them.
+TEST(PhotonMappingCaustics, FindWhatPathTracingCannot) {
+    const Rendered path =
+        render_file(kScenes + "reference/sds-point.pbrt", settings_of("cpu", "path:maxdepth=24", 16, 32));
+    EXPECT_EQ(path.mean_luminance(), 0.0);
+    const Mean mean =
+        mean_of_runs("reference/sds-point.pbrt", settings_of("cpu", "sppm:maxdepth=24,schedule=memoryless", 12, 0), 4);
+    const Image image = read_image(kScenes + "reference/sds-point.exr");
+    double reference = 0.0;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) reference += double(image.at(x, y, 1));
+    reference /= double(image.width) * image.height;
+    expect_mean(mean, reference, 0.02 * reference);
+    EXPECT_LT(mean.error(), 0.01 * reference);
+}
+
+}  // namespace
+}  // namespace lampyris::test
