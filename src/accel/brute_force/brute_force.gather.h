@@ -14,6 +14,6 @@ KERNEL(brute_force) {
         float d2;
         if (in_range(place_position(photons[i].place), vec3(q), q.w, d2)) gather_add(g, index, photons[i], d2, 1.0f);
     }
-    if (i < count) REPORT_UNFINISHED();
+    if (i != count) REPORT_UNFINISHED();
     gather_end(g, index);
 }

@@ -12,7 +12,7 @@ KERNEL(hash_list_insert) {
     PhotonGrid g = grid[0];
     uint end = min((index + 1u) * CHUNK, g.sizes.x);
     uint begin = index * CHUNK;
-    for (; begin < end; begin += BATCH) {
+    for (; begin < end; begin += min(BATCH, end - begin)) {
         uint buckets[BATCH];
         uint count = min(BATCH, end - begin);
         for (uint k = 0u; k < count; ++k) {
@@ -25,5 +25,5 @@ KERNEL(hash_list_insert) {
             heads[buckets[k]] = begin + k + 1u;
         }
     }
-    if (begin < end) REPORT_UNFINISHED();
+    if (begin != end) REPORT_UNFINISHED();
 }

@@ -17,5 +17,5 @@ KERNEL(hash_list_order) {
         if (heads[ahead] != 0u) PREFETCH(nodes[heads[ahead] - 1u]);
         if (heads[b] != 0u && nodes[heads[b] - 1u].w != 0u) heads[b] = chain_sort(heads[b]);
     }
-    if (b < end) REPORT_UNFINISHED();
+    if (b != end) REPORT_UNFINISHED();
 }

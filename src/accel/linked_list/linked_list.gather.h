@@ -66,10 +66,11 @@ KERNEL(linked_list) {
     uvec3 low = grid_cell(g, vec3(q) - reach);
     uvec3 size = grid_cell(g, vec3(q) + reach) - low + uvec3(1u);
     uint cells = size.x * size.y * size.z;
-    uint first = 0u;
+    uint groups = (cells + CHAINS - 1u) / CHAINS;
+    uint group = 0u;
     bool finished = true;
-    for (; first < cells; first += CHAINS)
-        if (!linked_list_chains(g, q, low, size, first, index, gathered)) finished = false;
-    if (first < cells || !finished) REPORT_UNFINISHED();
+    for (; group < groups; ++group)
+        if (!linked_list_chains(g, q, low, size, group * CHAINS, index, gathered)) finished = false;
+    if (group != groups || !finished) REPORT_UNFINISHED();
     gather_end(gathered, index);
 }

@@ -22,7 +22,7 @@ FN void sorted_grid_range(IN(PhotonGrid) g, vec4 q, uvec3 low, uvec3 high, uint 
         photon.flux = fluxes[i];
         gather_add(gathered, query, photon, d2, 1.0f);
     }
-    if (i < end) REPORT_UNFINISHED();
+    if (i != end) REPORT_UNFINISHED();
 }
 
 KERNEL(sorted_grid) {
@@ -46,8 +46,8 @@ KERNEL(sorted_grid) {
             sorted_grid_range(g, q, from, high, starts[first], starts[first + before], index, gathered);
             if (before < length) sorted_grid_range(g, q, from, high, 0u, starts[length - before], index, gathered);
         }
-        if (y <= high.y) REPORT_UNFINISHED();
+        if (y != high.y + 1u) REPORT_UNFINISHED();
     }
-    if (z <= high.z) REPORT_UNFINISHED();
+    if (z != high.z + 1u) REPORT_UNFINISHED();
     gather_end(gathered, index);
 }

@@ -17,8 +17,7 @@ KERNEL(sorted_grid_order) {
         uint end = min(starts[entry + 1u], starts[entry] + 16u);
         for (uint i = starts[entry]; i < end; ++i) PREFETCH(photons[order[i].y].place);
     }
-    uint k = 0u;
-    for (; k < BATCH; ++k) {
+    for (uint k = 0u; k < BATCH; ++k) {
         uint entry = batch_item(index, k);
         if (entry >= entries) continue;
         uint begin = starts[entry];
@@ -30,7 +29,6 @@ KERNEL(sorted_grid_order) {
             places[i] = photons[photon].place;
             fluxes[i] = photons[photon].flux;
         }
-        if (i < end) REPORT_UNFINISHED();
+        if (i != end) REPORT_UNFINISHED();
     }
-    if (k < BATCH) REPORT_UNFINISHED();
 }

@@ -31,7 +31,7 @@ FN void splat_range(IN(SplatRecord) s, IN(PhotonRecord) photon, uvec3 low, uvec3
         splat_add(4u * query + 2u, value.z, s.scale.z);
         splat_add(4u * query + 3u, value.w, s.scale.w);
     }
-    if (i < end) REPORT_UNFINISHED();
+    if (i != end) REPORT_UNFINISHED();
 }
 
 KERNEL(splat) {
@@ -54,7 +54,7 @@ KERNEL(splat) {
             splat_range(s, photon, from, high, starts[first], starts[first + before]);
             if (before < length) splat_range(s, photon, from, high, 0u, starts[length - before]);
         }
-        if (y <= high.y) REPORT_UNFINISHED();
+        if (y != high.y + 1u) REPORT_UNFINISHED();
     }
-    if (z <= high.z) REPORT_UNFINISHED();
+    if (z != high.z + 1u) REPORT_UNFINISHED();
 }

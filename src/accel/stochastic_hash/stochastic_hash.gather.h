@@ -40,10 +40,10 @@ KERNEL(stochastic_hash) {
                     gather_add(gathered, index, photon, d2, weight);
                 }
             }
-            if (x <= high.x) REPORT_UNFINISHED();
+            if (x != high.x + 1u) REPORT_UNFINISHED();
         }
-        if (y <= high.y) REPORT_UNFINISHED();
+        if (y != high.y + 1u) REPORT_UNFINISHED();
     }
-    if (z <= high.z) REPORT_UNFINISHED();
+    if (z != high.z + 1u) REPORT_UNFINISHED();
     gather_end(gathered, index);
 }

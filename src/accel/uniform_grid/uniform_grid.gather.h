@@ -51,6 +51,6 @@ KERNEL(uniform_grid) {
         uniform_grid_cell(g, q, uniform_grid_index(g, low + uvec3(c - row * size.x, row % size.y, row / size.y)), index,
                           gathered);
     }
-    if (c < cells) REPORT_UNFINISHED();
+    if (c != cells) REPORT_UNFINISHED();
     gather_end(gathered, index);
 }

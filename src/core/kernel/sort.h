@@ -24,16 +24,17 @@ FN void sort_sink(uint begin, uint root, uint count) {
 FN void sort_order(uint begin, uint end) {
     uint count = end - begin;
     if (count > 32u) {
-        uint i = count / 2u;
-        for (; i > 0u; --i) sort_sink(begin, i - 1u, count);
-        uint last = count - 1u;
-        for (; last > 0u; --last) {
+        uint sunk = 0u;
+        for (; sunk < count / 2u; ++sunk) sort_sink(begin, count / 2u - 1u - sunk, count);
+        uint taken = 0u;
+        for (; taken < count - 1u; ++taken) {
+            uint last = count - 1u - taken;
             uvec2 largest = order[begin];
             order[begin] = order[begin + last];
             order[begin + last] = largest;
             sort_sink(begin, 0u, last);
         }
-        if (i > 0u || last > 0u) REPORT_UNFINISHED();
+        if (sunk != count / 2u || taken != count - 1u) REPORT_UNFINISHED();
         return;
     }
     for (uint i = begin + 1u; i < end; ++i) {
