@@ -12,7 +12,7 @@ class HashList : public PhotonMap {
  protected:
     static constexpr const char* kInsert = "accel/hash_list/hash_list_insert.kernel.h";
     static constexpr const char* kOrder = "accel/hash_list/hash_list_order.kernel.h";
-    static constexpr uint32_t kChunk = 4096;  // CHUNK of both
+    static constexpr uint32_t kChunk = 4096, kOrderChunk = 1024;  // CHUNK of both
     std::vector<std::string> kernels() const override { return {kInsert, kOrder}; }
 
     void construct(const PhotonSet& photons) override {
@@ -24,7 +24,8 @@ class HashList : public PhotonMap {
         clear(heads, size_t(grid.sizes.y) * 4);
         run_serially(kInsert, {record, photons.photons, heads, nodes}, (photons.count + kChunk - 1) / kChunk);
         if (params.order == 0)
-            run_serially(kOrder, {record, photons.photons, heads, nodes}, (grid.sizes.y + kChunk - 1) / kChunk);
+            run_serially(kOrder, {record, photons.photons, heads, nodes},
+                         (grid.sizes.y + kOrderChunk - 1) / kOrderChunk);
     }
     std::vector<BufferHandle> gather_buffers() const override {
         return {kept("grid"), kept("heads"), kept("nodes"), photons_.photons};

@@ -1,4 +1,5 @@
-// The same thread sorts the chains by key, CHUNK buckets an invocation.
+// The same thread sorts the chains by key, CHUNK buckets an invocation: fewer than when it links, since a chain takes many steps
+// and Mesa 22 allows 65,535.
 #include "core/kernel/photon_grid.h"
 
 BUFFER_RO(0, PhotonGrid, grid)
@@ -7,7 +8,7 @@ BUFFER_RW(2, uint, heads)
 BUFFER_RW(3, uvec4, nodes)
 #include "accel/linked_list/linked_list_sort.layout.h"
 
-CONST uint CHUNK = 4096u;
+CONST uint CHUNK = 1024u;
 
 KERNEL(hash_list_order) {
     uint end = min((index + 1u) * CHUNK, grid[0].sizes.y);
