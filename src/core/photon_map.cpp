@@ -31,6 +31,7 @@ constexpr const char* kScanWrite = "core/kernel/scan_write.kernel.h";
 size_t with_room(size_t bytes) { return (bytes + bytes / 8 + 63) / 16 * 16; }
 
 constexpr uint32_t kScanBlock = 1024;  // SCAN_BLOCK of core/kernel/scan.h
+constexpr uint32_t kRadixBits = 8, kRadixDigits = 1 << kRadixBits, kRadixBlock = 4096;  // as in core/kernel/radix.h
 
 }  // namespace
 
@@ -153,6 +154,24 @@ void PhotonMap::scan_level(const BufferHandle& values, uint32_t count, int level
         scan_level(sums, blocks, level + 1);
     }
     run(kScanWrite, {arguments, values, sums}, blocks);
+}
+
+const std::vector<std::string> PhotonMap::kRadixKernels{"core/kernel/radix_count.kernel.h",
+                                                        "core/kernel/radix_move.kernel.h"};
+
+BufferHandle PhotonMap::radix_sort(const BufferHandle& pairs, const BufferHandle& other, uint32_t count,
+                                   uint32_t bits) {
+    BufferHandle from = pairs, to = other;
+    const uint32_t blocks = (count + kRadixBlock - 1) / kRadixBlock;
+    const BufferHandle counts = keep("radix counts", size_t(blocks) * kRadixDigits * 4);
+    for (uint32_t shift = 0; shift < bits; shift += kRadixBits) {
+        const BufferHandle arguments = upload("radix", glm::uvec4(count, blocks, shift, 0));
+        run(kRadixKernels[0], {arguments, from, counts}, blocks);
+        scan(counts, blocks * kRadixDigits);
+        run(kRadixKernels[1], {arguments, from, counts, to}, blocks);
+        std::swap(from, to);
+    }
+    return from;
 }
 
 const Kernel& PhotonMap::compiled(const std::string& file, uint32_t effects) {

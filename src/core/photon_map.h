@@ -19,6 +19,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace lampyris {
 
@@ -113,6 +114,10 @@ class PhotonMap {
     void clear(const BufferHandle& buffer, size_t bytes);  // to zero, on the device
     // Replaces each of `count` words by the sum of those before it.
     void scan(const BufferHandle& values, uint32_t count);
+    // Sorts `count` pairs of words (key, value) by the `bits` lowest bits of the key, stably. `other` is room for as many; returns
+    // which of both holds the result. Kernels that use it name kRadixKernels among theirs.
+    BufferHandle radix_sort(const BufferHandle& pairs, const BufferHandle& other, uint32_t count, uint32_t bits);
+    static const std::vector<std::string> kRadixKernels;
     template <typename T>
     BufferHandle upload(const std::string& name, const T& value) {
         const BufferHandle& buffer = keep(name, sizeof(T));

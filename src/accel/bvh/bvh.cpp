@@ -1,0 +1,74 @@
+#include "core/photon_map.h"
+#include "accel/bvh/bvh.params.h"
+
+#include <glm/glm.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lampyris {
+namespace {
+
+struct TreeRecord {  // of bvh.layout.h
+    glm::vec4 origin;
+    glm::uvec4 sizes;
+    glm::uvec4 levels[16];
+};
+
+class Bvh : public PhotonMap {
+ public:
+    BvhParams params;
+    PhotonMapCapabilities capabilities() const override { return {.exact = true, .fixed_order = true}; }
+
+ protected:
+    static constexpr const char* kCode = "accel/bvh/bvh_code.kernel.h";
+    static constexpr const char* kOrder = "accel/bvh/bvh_order.kernel.h";
+    static constexpr const char* kLeaves = "accel/bvh/bvh_leaves.kernel.h";
+    static constexpr const char* kLevel = "accel/bvh/bvh_level.kernel.h";
+    std::vector<std::string> kernels() const override {
+        return {kCode, kOrder, kLeaves, kLevel, kRadixKernels[0], kRadixKernels[1]};
+    }
+
+    // Where each level's boxes lie. Returns their number.
+    uint32_t lay_out(TreeRecord& record) const {
+        uint32_t boxes = 0, level = 0;
+        for (uint32_t nodes = (record.sizes.x + params.leaf - 1) / params.leaf;; nodes = (nodes + 3) / 4) {
+            record.levels[level++] = {boxes, nodes, 0, 0};
+            boxes += nodes;
+            if (nodes <= 1) break;
+        }
+        record.sizes.z = level;
+        return boxes;
+    }
+
+    void construct(const PhotonSet& photons) override {
+        const uint32_t count = photons.count;
+        TreeRecord record{};
+        record.sizes = {count, params.leaf, 0, 0};
+        const glm::vec3 extent = photons.high - photons.low;
+        const float largest = std::max({extent.x, extent.y, extent.z, 0.0f});
+        record.origin = glm::vec4(photons.low, largest > 0 && std::isfinite(largest) ? 1048576.0f / largest : 0.0f);
+        const uint32_t boxes_count = lay_out(record);
+        const BufferHandle tree = upload("tree", record);
+        const BufferHandle pairs = keep("pairs", size_t(count) * 8), other = keep("pairs 2", size_t(count) * 8);
+        const BufferHandle places = keep("places", size_t(count) * 16), fluxes = keep("fluxes", size_t(count) * 16);
+        const BufferHandle boxes = keep("boxes", size_t(boxes_count) * 32);
+        run(kCode, {tree, photons.photons, pairs}, count);
+        const BufferHandle sorted = radix_sort(pairs, other, count, 32);
+        const BufferHandle order = sorted == pairs ? other : pairs;
+        run(kOrder, {tree, photons.photons, sorted, order}, count);
+        run(kLeaves, {tree, photons.photons, order, places, fluxes, boxes}, record.levels[0].y);
+        for (uint32_t level = 1; level < record.sizes.z; ++level) {
+            record.sizes.w = level;
+            run(kLevel, {upload("tree", record), boxes}, record.levels[level].y);
+        }
+    }
+    std::vector<BufferHandle> gather_buffers() const override {
+        return {kept("tree"), kept("boxes"), kept("places"), kept("fluxes")};
+    }
+};
+
+REGISTER_PHOTON_MAP(Bvh, BVH_PARAMS, "bvh", "A tree of boxes over photons in Morton order.")
+
+}  // namespace
+}  // namespace lampyris
