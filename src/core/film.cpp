@@ -9,13 +9,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace lampyris {
 namespace {
 
-struct Estimate {
-    double mean = 0.0, variance = 0.0;  // variance of the mean; NaN below two samples
-};
+using Estimate = ChannelEstimate;
 
 // A channel's mean and the variance of that mean. The weights of filter importance sampling are constant but for their sign,
 // so their average takes the place of the weight.
@@ -36,6 +35,16 @@ std::array<Estimate, 3> estimates(const kernel::FilmPixel& p) {
             estimate(double(p.sum.z) + double(p.low.z), p.squares.z, weight, n)};
 }
 
+// |z| that a standard normal variable stays below with the given probability: by bisection on erf.
+double normal_quantile(double confidence) {
+    double low = 0.0, high = 8.0;
+    for (int i = 0; i < 60; ++i) {
+        const double middle = 0.5 * (low + high);
+        (std::erf(middle / std::numbers::sqrt2) < confidence ? low : high) = middle;
+    }
+    return low;
+}
+
 }  // namespace
 
 Film::Film(Device& device, const Scene& scene, const std::array<int, 4>& crop)
@@ -54,12 +63,21 @@ Film::Film(Device& device, const Scene& scene, const std::array<int, 4>& crop)
     pixels_.resize(pixel_count());
 }
 
-void Film::download() { buffer_->download(pixels_.data(), pixels_.size() * sizeof(kernel::FilmPixel)); }
+void Film::attach_bias(BufferHandle buffer, double confidence) {
+    bias_buffer_ = std::move(buffer);
+    biases_.assign(pixels_.size(), kernel::FilmBias{});
+    confidence_ = confidence;
+}
+
+void Film::download() {
+    buffer_->download(pixels_.data(), pixels_.size() * sizeof(kernel::FilmPixel));
+    if (bias_buffer_) bias_buffer_->download(biases_.data(), biases_.size() * sizeof(kernel::FilmBias));
+}
 
 FilmSummary Film::summary() const {
     FilmSummary result;
     result.min_samples = std::numeric_limits<uint32_t>::max();
-    double error = 0.0;
+    double error = 0.0, bias_squared = 0.0;
     for (size_t i = 0; i < pixels_.size(); ++i) {
         const kernel::FilmPixel& p = pixels_[i];
         result.samples += p.counts.x;
@@ -70,9 +88,26 @@ FilmSummary Film::summary() const {
             result.first_non_finite = {uint32_t(window_.x + i % window_.z), uint32_t(window_.y + i / window_.z),
                                        p.counts.w};
         result.non_finite += p.counts.z;
-        for (const Estimate& e : estimates(p)) error += e.variance / (e.mean * e.mean + 0.01);
+        const std::array<Estimate, 3> radiance = estimates(p);
+        for (const Estimate& e : radiance) error += e.variance / (e.mean * e.mean + 0.01);
+        if (!bias_buffer_) continue;
+        const std::array<Estimate, 3> bias = bias_estimates(i);
+        // The square of a noisy estimate is too large by its variance; what is left may be negative here and there.
+        for (size_t c = 0; c < 3; ++c)
+            bias_squared +=
+                (bias[c].mean * bias[c].mean - bias[c].variance) / (radiance[c].mean * radiance[c].mean + 0.01);
     }
+    if (bias_squared > 0.0) error += bias_squared;
     result.estimated_relmse = error / (3.0 * double(pixels_.size()));
+    return result;
+}
+
+std::array<ChannelEstimate, 3> Film::bias_estimates(size_t i) const {
+    const kernel::FilmPixel& p = pixels_[i];
+    const double n = double(p.counts.x - p.counts.z), weight = double(p.sum.w) + double(p.low.w);
+    std::array<Estimate, 3> result;
+    for (int c = 0; c < 3; ++c)
+        result[size_t(c)] = estimate(double(biases_[i].sum[c]), double(biases_[i].squares[c]), weight, n);
     return result;
 }
 
@@ -85,15 +120,19 @@ std::vector<float> Film::rgb() const {
 }
 
 Image Film::image() const {
-    Image image(int(window_.z), int(window_.w),
-                {"R", "G", "B", "albedo.R", "albedo.G", "albedo.B", "normal.X", "normal.Y", "normal.Z", "depth.Z",
-                 "variance.R", "variance.G", "variance.B", "samples"});
+    std::vector<std::string> channels{"R",          "G",          "B",          "albedo.R", "albedo.G",
+                                      "albedo.B",   "normal.X",   "normal.Y",   "normal.Z", "depth.Z",
+                                      "variance.R", "variance.G", "variance.B", "samples"};
+    if (bias_buffer_) channels.insert(channels.end(), {"bias.R", "bias.G", "bias.B", "error.R", "error.G", "error.B"});
+    const double z = normal_quantile(confidence_);
+    Image image(int(window_.z), int(window_.w), std::move(channels));
     image.x = int(window_.x);
     image.y = int(window_.y);
     image.full_width = int(full_width_);
     image.full_height = int(full_height_);
     float* out = image.pixels.data();
-    for (const kernel::FilmPixel& p : pixels_) {
+    for (size_t i = 0; i < pixels_.size(); ++i) {
+        const kernel::FilmPixel& p = pixels_[i];
         const std::array<Estimate, 3> e = estimates(p);
         for (int c = 0; c < 3; ++c) *out++ = float(e[size_t(c)].mean);
         const float hits = p.albedo.w;
@@ -108,6 +147,15 @@ Image Film::image() const {
             *out++ = std::isnan(variance) ? 0.0f : float(variance);
         }
         *out++ = float(p.counts.x);
+        if (!bias_buffer_) continue;
+        const std::array<Estimate, 3> bias = bias_estimates(i);
+        for (size_t c = 0; c < 3; ++c) *out++ = float(bias[c].mean);
+        for (size_t c = 0; c < 3; ++c) {
+            // The true error differs from the estimated bias by the noise of both.
+            const double variance = e[c].variance + bias[c].variance;
+            const double noise = std::isnan(variance) ? 0.0 : std::sqrt(variance);
+            *out++ = float(std::abs(bias[c].mean) + z * noise);
+        }
     }
     return image;
 }

@@ -17,9 +17,13 @@ struct FilmSummary {
     uint32_t min_samples = 0, max_samples = 0;  // of a pixel
     uint64_t non_finite = 0;
     std::array<uint32_t, 3> first_non_finite{};  // x, y, pass; meaningful where non_finite > 0
-    // Estimated relMSE: the mean over pixels and channels of Var(mean) / (mean^2 + 0.01). Samples count as independent, which
-    // overstates the error of a stratified sampler. NaN below two samples a pixel.
+    // Estimated relMSE: the mean over pixels and channels of (Var(mean) + bias^2) / (mean^2 + 0.01). Samples count as independent,
+    // which overstates the error of a stratified sampler. The bias is that of attach_bias, else 0. NaN below two samples a pixel.
     double estimated_relmse = 0.0;
+};
+
+struct ChannelEstimate {
+    double mean = 0.0, variance = 0.0;  // variance of the mean; NaN below two samples
 };
 
 class Film {
@@ -31,6 +35,11 @@ class Film {
     glm::uvec4 window() const { return window_; }           // x0, y0, width, height
     uint32_t pixel_count() const { return window_.z * window_.w; }
 
+    // For integrators that estimate their bias sample by sample: kernel::FilmBias, pixel by pixel. From then on it counts in the
+    // summary's error, and the image has the channels `bias` (of the mean) and `error`: |bias| + z sqrt(variance of both), which the true
+    // error stays below with the given confidence where radiance is smooth (Hachisuka et al. 2010, equation 17).
+    void attach_bias(BufferHandle buffer, double confidence);
+
     void download();  // what the device has added up; the functions below look at the last download
     FilmSummary summary() const;
     std::vector<float> rgb() const;  // [height][width][3]
@@ -39,10 +48,14 @@ class Film {
     const std::vector<kernel::FilmPixel>& pixels() const { return pixels_; }
 
  private:
+    std::array<ChannelEstimate, 3> bias_estimates(size_t pixel) const;
     glm::uvec4 window_;
     uint32_t full_width_, full_height_;
     BufferHandle buffer_;
     std::vector<kernel::FilmPixel> pixels_;
+    BufferHandle bias_buffer_;
+    std::vector<kernel::FilmBias> biases_;
+    double confidence_ = 0.0;
 };
 
 }  // namespace lampyris

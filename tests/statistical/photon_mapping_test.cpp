@@ -210,5 +210,31 @@ TEST(PhotonMappingCaustics, FindWhatPathTracingCannot) {
     EXPECT_LT(mean.error(), 0.01 * reference);
 }
 
+// A lamp in a ball of glass, seen through glass and in a mirror: against very many samples of a path tracer, in blocks of 16x16
+// pixels. Allowed: five standard errors of the reference (heavy-tailed: its own estimate may be a third too small), 0.8 % a standard
+// error for our noise, and 1 % for the blur of radii.
+TEST(PhotonMappingCaustics, AgreeWithAPatientPathTracerBlockByBlock) {
+    constexpr int kBlock = 16;
+    const Rendered ours =
+        render_file(kScenes + "reference/sds-lamp.pbrt", settings_of("cpu", "sppm:maxdepth=24", 64, 0));
+    const Image reference = read_image(kScenes + "reference/sds-lamp-path.exr");
+    const Image errors = read_image(kScenes + "reference/sds-lamp-path.se.exr");
+    int wrong = 0;
+    for (int by = 0; by < reference.height; by += kBlock)
+        for (int bx = 0; bx < reference.width; bx += kBlock) {
+            double a = 0.0, b = 0.0, variance = 0.0;
+            for (int y = by; y < by + kBlock; ++y)
+                for (int x = bx; x < bx + kBlock; ++x) {
+                    a += double(ours.value(x, y, 1)), b += double(reference.at(x, y, 1));
+                    variance += std::pow(double(errors.at(x, y, 1)), 2);
+                }
+            const double limit = 5.0 * std::sqrt(1.8 * variance + std::pow(0.008 * b, 2)) + 0.01 * b;
+            wrong += std::abs(a - b) > limit;
+            EXPECT_LT(limit, 0.15 * b) << "block " << bx << ", " << by << ": the test cannot tell";
+        }
+    EXPECT_EQ(wrong, 0);
+    if (wrong) save_failure("photon_mapping_sds_lamp", ours.image);
+}
+
 }  // namespace
 }  // namespace lampyris::test

@@ -36,6 +36,7 @@ Rendered render_description(SceneDescription description, const RenderSettings& 
     session.sampler = settings.sampler.value_or(built.settings.sampler) == "independent" ? kernel::SAMPLER_INDEPENDENT
                                                                                          : kernel::SAMPLER_SOBOL;
     session.max_slice = settings.slice;
+    session.on_progress = settings.on_progress;
     session.photon_map = settings.photon_map;
     session.start_at(settings.first_pass);
     integrator->render(session);

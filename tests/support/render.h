@@ -7,6 +7,7 @@
 #include "core/scene/build.h"
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -27,6 +28,7 @@ struct RenderSettings {
     std::optional<std::array<int, 4>> crop;
     uint32_t first_pass = 0;
     uint32_t slice = 0;  // passes per dispatch; 0: as the session decides
+    std::function<void(const RenderProgress&, const Film&)> on_progress;  // RenderSession's
 };
 
 struct Rendered {

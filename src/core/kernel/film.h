@@ -38,6 +38,14 @@ FN void film_add(INOUT(FilmPixel) p, vec3 radiance, float weight, uint pass) {
     p.squares.z += value.z * value.z;
 }
 
+// Adds one sample's estimate of its own bias.
+FN void film_add_bias(INOUT(FilmBias) p, vec3 bias, float weight) {
+    if (!is_finite3(bias)) return;
+    vec3 value = bias * weight;
+    p.sum += vec4(value.x, value.y, value.z, 0.0f);
+    p.squares += vec4(value.x * value.x, value.y * value.y, value.z * value.z, 0.0f);
+}
+
 // What the film makes of radiance before it is added: the sensor's imaging ratio and the clamp of `maxcomponentvalue`.
 FN vec3 film_sensor(vec3 radiance) {
     vec3 value = radiance * scene[0].camera.lens.w;

@@ -240,6 +240,12 @@ struct FilmPixel {
     uvec4 counts;  // samples, rays, non-finite samples, pass of the first non-finite sample
 };
 
+// What an integrator knows of its bias: sums over samples, as FilmPixel's.
+struct FilmBias {
+    vec4 sum;
+    vec4 squares;
+};
+
 // The part of the image that is rendered, in pixels of the full film, and which samples.
 struct FilmWindow {
     uvec4 pixels;   // x0, y0, width, height

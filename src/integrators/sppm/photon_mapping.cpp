@@ -64,7 +64,12 @@ class PhotonMapping {
         statistics_->upload(initial.data(), initial.size() * sizeof(glm::vec2));
         map_ = create_photon_map(session.photon_map);
         map_->open(device_);
-        consumer_ = {kConsumer, effects, session.device_scene.get(), {hits_, gathered_}};
+        biases_ = device_.create_buffer(points * sizeof(glm::vec4), "bias of gathered flux");
+        film_bias_ = device_.create_buffer(size_t(pixels_) * sizeof(kernel::FilmBias), "bias of the film");
+        film_bias_->fill_zero();
+        // A structure over the hit points hands over sums, which say nothing of how flux varies within a disk.
+        if (!map_->capabilities().sums_only) session.film.attach_bias(film_bias_, double(params.confidence));
+        consumer_ = {kConsumer, effects, session.device_scene.get(), {hits_, gathered_, biases_}};
         map_->prepare(consumer_);
     }
 
@@ -90,7 +95,7 @@ class PhotonMapping {
         pass_buffer_->upload(&pass_, sizeof pass_);
         if (!fixed_ || !followed_) follow_eye_paths(pass);
         run(kRadius, *radius_, "eye_pass",
-            std::array{params_buffer_, pass_buffer_, hits_, queries_, statistics_, gathered_, counters_},
+            std::array{params_buffer_, pass_buffer_, hits_, queries_, statistics_, gathered_, counters_, biases_},
             points_ * pixels_);
         const Counters box = download_counters();
         for (int c = 0; c < 3; ++c) {
@@ -102,7 +107,7 @@ class PhotonMapping {
         if (box[kernel::SPPM_RADIUS] > 0) photon_pass();
         run(kResolve, *resolve_, "resolve",
             std::array{window_, params_buffer_, session_.film.buffer(), pass_buffer_, hits_, queries_, gathered_,
-                       statistics_},
+                       statistics_, biases_, film_bias_},
             pixels_);
     }
 
@@ -226,7 +231,8 @@ class PhotonMapping {
     float largest_radius_ = 0;
     kernel::SppmPass pass_{};
     KernelHandle eye_, radius_, photons_, resolve_;
-    BufferHandle window_, params_buffer_, pass_buffer_, counters_, hits_, queries_, gathered_, statistics_, store_;
+    BufferHandle window_, params_buffer_, pass_buffer_, counters_, hits_, queries_, gathered_, statistics_, biases_,
+        film_bias_, store_;
     std::unique_ptr<PhotonMap> map_;
     PhotonConsumer consumer_;
 };

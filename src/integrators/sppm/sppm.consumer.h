@@ -10,6 +10,7 @@
 
 BUFFER_RO(16, SppmHit, hits)
 BUFFER_RW(17, vec4, gathered)
+BUFFER_RW(18, vec4, biases)
 
 struct Gathered {
     Bsdf bsdf;
@@ -17,7 +18,9 @@ struct Gathered {
     vec3 wo;  // local
     vec3 ng;  // on the side that the eye is on
     uint both_sides;
-    vec4 sum;  // BSDF times power; w: photons
+    float over_radius_squared;
+    vec4 sum;   // BSDF times power; w: photons
+    vec3 bias;  // what of the sum the radius has brought in: see gather_add
 };
 
 FN Gathered nothing_gathered() {
@@ -27,7 +30,9 @@ FN Gathered nothing_gathered() {
     g.wo = vec3(0.0f);
     g.ng = vec3(0.0f);
     g.both_sides = 0u;
+    g.over_radius_squared = 0.0f;
     g.sum = vec4(0.0f);
+    g.bias = vec3(0.0f);
     return g;
 }
 
@@ -47,7 +52,10 @@ FN Gathered gather_begin(uint query) {
     g.bsdf = material_bsdf(s, -direction, g.frame);
     g.wo = to_local(g.frame, -direction);
     g.both_sides = bsdf_transmits(g.bsdf) ? 1u : 0u;
+    float radius = queries[query].w;
+    g.over_radius_squared = 1.0f / max(radius * radius, SMALLEST_RADIUS_SQUARED);
     g.sum = vec4(0.0f);
+    g.bias = vec3(0.0f);
     return g;
 }
 
@@ -61,9 +69,14 @@ FN void gather_add(INOUT(Gathered) g, uint query, IN(PhotonRecord) photon, float
     // Photons are counted on the geometric surface, the BSDF wants the shading normal's cosine (clamped where grazing).
     vec3 value = f * photon_power(photon) * (weight * abs(wi.z) / max(abs(cosine), GRAZING_COSINE));
     g.sum += vec4(value.x, value.y, value.z, weight);
+    // A disk of radius r sees too much by r^2/8 times the Laplacian (Hachisuka et al. 2010, equation 6, with k2 = 1/4). That is
+    // estimated by the Laplacian of the kernel 4 (1 - t)^3 / (pi r^2), t = d^2 / r^2: as a share of what the disk's own
+    // kernel 1 / (pi r^2) counts, a photon has the weight 6 (1 - t) (3 t - 1).
+    float t = distance_squared * g.over_radius_squared;
+    g.bias += value * (6.0f * (1.0f - t) * (3.0f * t - 1.0f));
 }
 
-// For structures over the hit points: the surface is found again for each photon.
+// For structures over the hit points: the surface is found again for each photon, and the bias is not estimated.
 FN vec4 gather_value(uint query, IN(PhotonRecord) photon, float distance_squared) {
     Gathered g = gather_begin(query);
     gather_add(g, query, photon, distance_squared, 1.0f);
@@ -76,4 +89,7 @@ FN Gathered gather_sums(uint query, vec4 sums) {
     return g;
 }
 
-FN void gather_end(IN(Gathered) g, uint query) { gathered[query] += g.sum; }
+FN void gather_end(IN(Gathered) g, uint query) {
+    gathered[query] += g.sum;
+    biases[query] += vec4(g.bias.x, g.bias.y, g.bias.z, 0.0f);
+}

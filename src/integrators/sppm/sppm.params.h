@@ -20,6 +20,8 @@
     P(uint, direct, 0, 0, 1,                                                                                       \
       "{nee|photons} light that arrives without a bounce is found by sampling lights, or by photons")              \
     P(float, glossy, 0.1f, 0, 1, "GGX alpha below which eye paths follow a reflection and photons are not kept")   \
+    P(float, confidence, 0.9f, 0.5f, 0.999999f,                                                                    \
+      "of the image's channel `error`: bias and noise stay below it so often, where all is smooth")                \
     P(int, store, 0, 0, 1000000000, "photons stored at once, more are gathered in parts; 0: four per path")
 PARAMS(SppmParams, SPPM_PARAMS)
 

@@ -12,6 +12,7 @@ BUFFER_RW(3, vec4, queries)
 BUFFER_RO(4, vec2, statistics)
 BUFFER_RW(5, vec4, gathered)
 BUFFER_RW(6, uint, counters)
+BUFFER_RW(7, vec4, biases)
 
 // Floats as integers in the same order.
 FN uint ordered_bits(float x) {
@@ -26,6 +27,7 @@ FN void raise(uint counter, uint value) {
 
 KERNEL(sppm_radius) {
     gathered[index] = vec4(0.0f);
+    biases[index] = vec4(0.0f);
     vec4 q = queries[index];
     if (q.w < 0.0f) return;
     float scale = params[0].schedule == SPPM_MEMORYLESS ? passes[0].scale.x : statistics[index].x;

@@ -13,6 +13,8 @@ BUFFER_RO(3, SppmPass, passes)
 BUFFER_RO(4, SppmHit, hits)
 BUFFER_RO(5, vec4, queries)
 BUFFER_RO(6, vec4, gathered)
+BUFFER_RO(8, vec4, biases)
+BUFFER_RW(9, FilmBias, film_bias)
 BUFFER_RW(7, vec2, statistics)  // x: squared radius over that of the first pass; y: photons kept so far (N)
 
 // The scale of the squared radius after M more photons (Hachisuka et al. 2008, equation 7): R'^2 = R^2 (N + a M) / (N + M).
@@ -33,14 +35,18 @@ KERNEL(sppm_resolve) {
         SppmHit hit = hits[at];
         vec3 radiance = vec3(hit.radiance);
         vec4 q = queries[at];
+        vec3 bias = vec3(0.0f);
         if (q.w >= 0.0f) {
             vec4 sum = gathered[at];
             // Summing flux over area pass by pass is the shared-statistics estimate tau / (pi R^2), without its rescaling:
             // tau_n / R_n^2 = sum of Phi_i / R_i^2.
-            radiance += vec3(hit.throughput) * vec3(sum) * (1.0f / (PI * max(q.w * q.w, SMALLEST_RADIUS_SQUARED)));
+            vec3 share = vec3(hit.throughput) * (1.0f / (PI * max(q.w * q.w, SMALLEST_RADIUS_SQUARED)));
+            radiance += share * vec3(sum);
+            bias = share * vec3(biases[at]);
             statistics[at] = shrink(statistics[at], sum.w);
         }
         film_add(pixel, film_sensor(radiance), hit.throughput.w, passes[0].photons.z);
+        film_add_bias(film_bias[index], bias * scene[0].camera.lens.w, hit.throughput.w);
     }
     if (i < count) REPORT_UNFINISHED();
     film[index] = pixel;
