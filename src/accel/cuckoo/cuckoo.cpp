@@ -1,0 +1,77 @@
+#include "core/photon_grid.h"
+#include "accel/cuckoo/cuckoo.params.h"
+
+#include <cmath>
+
+namespace lampyris {
+namespace {
+
+struct CuckooRecord {  // of cuckoo.layout.h
+    kernel::PhotonGrid grid;
+    glm::uvec4 seeds;
+};
+
+class Cuckoo : public PhotonMap {
+ public:
+    CuckooParams params;
+    PhotonMapCapabilities capabilities() const override { return {.exact = true, .fixed_order = true}; }
+
+ protected:
+    static constexpr const char* kCode = "accel/cuckoo/cuckoo_code.kernel.h";
+    static constexpr const char* kOrder = "accel/cuckoo/cuckoo_order.kernel.h";
+    static constexpr const char* kCopy = "accel/cuckoo/cuckoo_copy.kernel.h";
+    static constexpr const char* kInsert = "accel/cuckoo/cuckoo_insert.kernel.h";
+    std::vector<std::string> kernels() const override {
+        return {kCode, kOrder, kCopy, kInsert, kRadixKernels[0], kRadixKernels[1]};
+    }
+
+    void construct(const PhotonSet& photons) override {
+        const uint32_t count = photons.count;
+        CuckooRecord record{make_grid(photons, params.cell_size), {}};
+        record.grid.sizes.w = params.stash;
+        const BufferHandle pairs = keep("pairs", size_t(count) * 8), other = keep("pairs 2", size_t(count) * 8);
+        const BufferHandle places = keep("places", size_t(count) * 16), fluxes = keep("fluxes", size_t(count) * 16);
+        const BufferHandle cells = keep("cells", (size_t(count) + 1) * 8);
+        const BufferHandle runs = keep("runs", (size_t(count) + 1) * 4);
+        BufferHandle arguments = upload("cuckoo", record);
+        run(kCode, {arguments, photons.photons, pairs}, count);
+        const BufferHandle sorted = radix_sort(pairs, other, count, 32);
+        const BufferHandle order = sorted == pairs ? other : pairs;
+        const uint32_t none = 0;
+        runs->upload(&none, 4, size_t(count) * 4);
+        run(kOrder, {arguments, photons.photons, sorted, order, runs}, count);
+        scan(runs, count + 1);
+        run(kCopy, {arguments, photons.photons, sorted, order, runs, places, fluxes, cells}, batch_count(count + 1));
+        runs->download(&record.grid.sizes.z, 4, size_t(count) * 4);
+        fill_table(record);
+    }
+
+    // With new hash functions until all cells but the stash's have an entry. The table grows a little with each try, so that it ends.
+    void fill_table(CuckooRecord& record) {
+        double entries = std::ceil(record.grid.sizes.z * double(params.table_size)) + 4;
+        for (uint32_t attempt = 0;; ++attempt, entries *= 1.1) {
+            record.grid.sizes.y = uint32_t(entries);
+            for (int way = 0; way < 4; ++way)
+                record.seeds[way] = record.grid.resolution.w + 0x9e3779b9u * (4 * attempt + uint32_t(way) + 1);
+            const BufferHandle arguments = upload("cuckoo", record);
+            const BufferHandle table = keep("table", size_t(record.grid.sizes.y) * 4);
+            const BufferHandle stash = keep("stash", (size_t(params.stash) + 1) * 4);
+            clear(table, size_t(record.grid.sizes.y) * 4);
+            const uint32_t none = 0;
+            stash->upload(&none, 4);
+            run(kInsert, {arguments, kept("cells"), table, stash}, record.grid.sizes.z);
+            uint32_t stashed = 0;
+            stash->download(&stashed, 4);
+            if (stashed <= params.stash) return;
+        }
+    }
+    std::vector<BufferHandle> gather_buffers() const override {
+        return {kept("cuckoo"), kept("table"), kept("stash"), kept("cells"), kept("places"), kept("fluxes")};
+    }
+};
+
+REGISTER_PHOTON_MAP(Cuckoo, CUCKOO_PARAMS, "cuckoo",
+                    "Photons sorted by cell, and a cuckoo hash table from cells to their photons.")
+
+}  // namespace
+}  // namespace lampyris
