@@ -77,8 +77,11 @@ void PhotonMap::open(Device& device) {
 
 std::vector<const Kernel*> PhotonMap::gather_kernels(const PhotonConsumer& consumer) {
     std::vector<const Kernel*> kernels;
-    for (const std::string& file : gather_files())
-        kernels.push_back(&compiled(fmt::format("{}+{}{}", consumer.file, folder(), file), consumer.effects));
+    for (const std::string& file : gather_files()) {
+        std::string path = fmt::format("accel/{}/{}", name(), file);
+        if (!find_kernel_text(path)) path = fmt::format("{}/{}", name(), file);  // outside of this tree
+        kernels.push_back(&compiled(fmt::format("{}+{}", consumer.file, path), consumer.effects));
+    }
     return kernels;
 }
 

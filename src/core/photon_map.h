@@ -89,9 +89,7 @@ class PhotonMap {
     size_t memory_bytes() const;  // of buffers now, without the photons
 
  protected:
-    virtual std::string name() const = 0;  // of the folder in src/accel/ and of its gather file
-    // Path of a kernel file in the map's folder.
-    virtual std::string folder() const { return "accel/" + name() + "/"; }
+    virtual std::string name() const = 0;  // of its folder and its gather file: "accel/NAME/NAME.gather.h", or a plugin's "NAME/..."
     virtual void check() const {}  // throws InputError
     virtual void construct(const PhotonSet& photons) = 0;
     // Bindings 1 to 15 of the gather kernel; 0 is the queries'.
