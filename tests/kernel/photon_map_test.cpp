@@ -21,68 +21,17 @@ std::unique_ptr<PhotonMap> open_map(Device& device, const std::string& choice) {
     return map;
 }
 
-struct Size {
-    uint32_t photons, queries;
-};
-// photon_map_long_test has the sizes of the specification.
-constexpr Size kSizes[] = {{2000, 4000}, {20'000, 200}, {1, 50}};
-
-// By the sum of hashed keys, or where a map knows sums only, by the number and the power of what was found: the reference adds up floats, with
-// a relative error of n * 2^-24 at most.
-bool same_photons(const CollectResult& found, const CollectResult& expected, bool sums_only) {
-    if (!sums_only) return found.found == expected.found;
-    bool same = found.found.x == expected.found.x;
-    for (int c = 0; c < 3; ++c)
-        same = same &&
-               std::abs(found.sum[c] - expected.sum[c]) <= 1e-6f * float(expected.found.x) * expected.sum[c] + 1e-6f;
-    return same;
-}
-
+// photon_map_long_test has the sizes that count.
 TEST(PhotonMap, ExactOnesFindWhatBruteForceFinds) {
-    const auto reference = create_device("cpu");
-    const auto brute = open_map(*reference, "brute_force");
-    struct Expected {
-        PhotonCase photon_case;
-        std::vector<CollectResult> results;
-    };
-    std::vector<Expected> cases;
-    for (const std::string& name : photon_case_names()) {
-        for (const Size& size : kSizes) {
-            Expected expected{make_photon_case(name, size.photons, size.queries), {}};
-            expected.results = collect(*reference, *brute, upload_case(*reference, expected.photon_case));
-            cases.push_back(std::move(expected));
-        }
-    }
     std::vector<std::string> maps = exact_photon_maps();
     maps.emplace_back("brute_force");
-    for (const std::string& backend : usable_backends()) {
-        if (backend == "cpu-bvh2") continue;  // kernels that trace no rays are the same ones there
-        const auto device = create_device(backend);
-        for (const std::string& choice : maps) {
-            if (choice == "brute_force" && backend == "cpu") continue;
-            const auto map = open_map(*device, choice);
-            for (const Expected& expected : cases) {
-                SCOPED_TRACE(backend + " " + choice + " " + expected.photon_case.name);
-                std::vector<CollectResult> found;
-                try {
-                    found = collect(*device, *map, upload_case(*device, expected.photon_case));
-                } catch (const MachineError& error) {
-                    // Mesa before 25 ends long loops, which must be told: thousands of photons in one place are such.
-                    ASSERT_NE(device->description().find("Mesa 22"), std::string::npos) << error.what();
-                    ASSERT_NE(std::string(error.what()).find("could not finish a loop"), std::string::npos);
-                    continue;
-                }
-                size_t wrong = 0;
-                for (size_t i = 0; i < found.size(); ++i) {
-                    if (same_photons(found[i], expected.results[i], map->capabilities().sums_only)) continue;
-                    if (wrong++ == 0)
-                        ADD_FAILURE() << "query " << i << " finds " << found[i].found.x << " of "
-                                      << expected.results[i].found.x;
-                }
-                EXPECT_EQ(wrong, 0u) << "of " << found.size();
-            }
-        }
+    std::vector<PhotonCase> cases;
+    for (const std::string& name : photon_case_names()) {
+        cases.push_back(make_photon_case(name, 2000, 4000));
+        cases.push_back(make_photon_case(name, 20'000, 200));
+        cases.push_back(make_photon_case(name, 1, 50));
     }
+    expect_exact(maps, cases);
 }
 
 // The same sums, to the bit, on any number of threads and any backend, and in whatever order photons were stored.

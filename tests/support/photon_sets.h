@@ -36,6 +36,13 @@ PhotonSet upload_case(Device& device, const PhotonCase& photon_case);
 // Builds and gathers on a device.
 std::vector<CollectResult> collect(Device& device, PhotonMap& map, const PhotonSet& set);
 
+// Whether both found the same: by the sum of hashed keys, or where a map knows sums only, by the number and the power of what was
+// found; the reference adds up floats, with a relative error of n * 2^-24 at most.
+bool same_photons(const CollectResult& found, const CollectResult& expected, bool sums_only);
+
+// Fails where one of the maps, on any backend, finds anything but what brute force finds on the CPU.
+void expect_exact(const std::vector<std::string>& maps, const std::vector<PhotonCase>& cases);
+
 // Names of maps, with parameters, that promise exactness: each in its default state and in those that tests ask for.
 std::vector<std::string> exact_photon_maps();
 
