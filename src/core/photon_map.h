@@ -89,8 +89,8 @@ class PhotonMap {
     size_t memory_bytes() const;  // of buffers now, without the photons
 
  protected:
-    virtual std::string name() const = 0;  // of its folder and its gather file: "accel/NAME/NAME.gather.h", or a plugin's "NAME/..."
-    virtual void check() const {}  // throws InputError
+    virtual std::string name() const = 0;  // of its folder and its gather file
+    virtual void check() const {}          // throws InputError
     virtual void construct(const PhotonSet& photons) = 0;
     // Bindings 1 to 15 of the gather kernel; 0 is the queries'.
     virtual std::vector<BufferHandle> gather_buffers() const = 0;
