@@ -76,7 +76,7 @@ function(lampyris_kernel_units target out KERNEL_FILE file)
     string(REPLACE " " "" KERNEL_VARIANTS "${KERNEL_VARIANTS}")
   endif()
   # What traces no rays is built once, for both tracers: gather kernels, and those that do not read the scene.
-  file(STRINGS ${file} scene REGEX "^#include \"core/kernel/(scene|trace)\\.h\"")
+  file(STRINGS ${file} scene REGEX "^#include \"(core/kernel/(scene|trace)\\.h|.*\\.kernel\\.h)\"")
   set(tracers embree bvh2)
   if(NOT scene OR KERNEL_FILE MATCHES "\\+")
     set(tracers any)
