@@ -33,7 +33,7 @@ KERNEL(ao) {
         }
         film_add(pixel, vec3(seen), camera.weight, camera.pass);
     }
-    if (i < w.samples.y) REPORT_UNFINISHED();
+    if (i != w.samples.y) REPORT_UNFINISHED();
     pixel.counts.y += rays;
     film[place] = pixel;
 }

@@ -123,7 +123,7 @@ KERNEL(path) {
         vec3 radiance = path_radiance(camera.ray.origin, camera.ray.direction, camera.numbers, pixel, rays);
         film_add(pixel, film_sensor(radiance), camera.weight, camera.pass);
     }
-    if (i < w.samples.y) REPORT_UNFINISHED();
+    if (i != w.samples.y) REPORT_UNFINISHED();
     pixel.counts.y += rays;
     film[place] = pixel;
 }

@@ -152,6 +152,6 @@ KERNEL(sppm_eye) {
         hits[at] = hit;
         queries[at] = query;
     }
-    if (i < w.samples.y) REPORT_UNFINISHED();
+    if (i != w.samples.y) REPORT_UNFINISHED();
     film[place] = pixel;
 }

@@ -48,6 +48,6 @@ KERNEL(sppm_resolve) {
         film_add(pixel, film_sensor(radiance), hit.throughput.w, passes[0].photons.z);
         film_add_bias(film_bias[index], bias * scene[0].camera.lens.w, hit.throughput.w);
     }
-    if (i < count) REPORT_UNFINISHED();
+    if (i != count) REPORT_UNFINISHED();
     film[index] = pixel;
 }
