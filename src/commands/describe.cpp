@@ -51,7 +51,7 @@ Counts count(const Scene& scene) {
                     bytes_of(scene.normals) + bytes_of(scene.uvs) + bytes_of(scene.transforms) +
                     bytes_of(scene.instances) + bytes_of(scene.materials) + bytes_of(scene.texture_ops) +
                     bytes_of(scene.images) + bytes_of(scene.texels) + bytes_of(scene.lights) +
-                    bytes_of(scene.distributions);
+                    bytes_of(scene.distributions) + bytes_of(scene.media);
     return counts;
 }
 

@@ -46,6 +46,20 @@ def test_describe_names_who_asks(program, scene):
     assert any("halton" in note for note in result["notes"])
 
 
+def test_describe_names_the_medium_that_absorbs(program, scene):
+    tea = (
+        'MakeNamedMedium "tea" "string type" "homogeneous" "rgb sigma_s" [ 0 0 0 ] "rgb sigma_a" [ 0 1 2 ]\n'
+        'MediumInterface "tea" ""\n'
+    )
+    scene.write_text(SCENE.replace('Shape "sphere"', tea + 'Shape "sphere"'))
+    done = run(program, "describe", scene, "--json")
+    assert done.returncode == 0, done.stderr
+    effects = {effect["name"]: effect for effect in json.loads(done.stdout)["effects"]}
+    assert effects["medium-absorption"]["asked_by"] == f'{scene}:7:1 (MakeNamedMedium "homogeneous")'
+    assert effects["medium-absorption"]["simulated"]
+    assert not effects["interface"]["simulated"]
+
+
 def test_describe_prints_a_table(program, scene):
     done = run(program, "describe", scene)
     assert done.returncode == 0, done.stderr

@@ -111,12 +111,33 @@ TEST(SceneMeaning, WhatIsNotSupportedIsToldAndCanBeSkipped) {
     expect_unsupported("Material \"subsurface\"\n" + kTriangle, {"test.pbrt:4:10", "material \"subsurface\""});
     expect_unsupported("ActiveTransform EndTime\nTranslate 1 0 0\nActiveTransform All\n" + kTriangle,
                        {"test.pbrt:7:1", "motion blur"});
-    expect_unsupported("MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\nMediumInterface \"fog\" \"\"\n" +
-                           kTriangle + kTriangle,
-                       {"test.pbrt:4:1", "participating medium \"fog\""});
+    // pbrt-v4's defaults scatter. Once for each medium, however often it is used.
+    const std::string fog = "MakeNamedMedium \"fog\" \"string type\" ",
+                      in_fog = "\nMediumInterface \"fog\" \"\"\n" + kTriangle;
+    expect_unsupported(fog + "\"homogeneous\"" + in_fog + kTriangle,
+                       {"test.pbrt:4:1", "participating medium \"fog\"", "scatters (\"sigma_s\" is 1)", "[ 0 0 0 ]"});
+    expect_unsupported(fog + "\"homogeneous\" \"rgb sigma_s\" [ 0 0 1e-9 ]" + in_fog, {"test.pbrt:4:67", "scatters"});
+    expect_unsupported(fog + "\"homogeneous\" \"string preset\" \"Coke\"" + in_fog, {"test.pbrt:4:67", "presets"});
+    expect_unsupported(fog + "\"homogeneous\" \"rgb sigma_s\" [ 0 0 0 ] \"rgb Le\" [ 1 0 0 ]" + in_fog,
+                       {"test.pbrt:4:86", "emits"});
+    expect_unsupported(fog + "\"cloud\"" + in_fog, {"test.pbrt:4:37", "\"fog\"", "\"cloud\"", "only absorb"});
     expect_unsupported("Shape \"curve\" \"point3 P\" [ 0 0 0 1 0 0 2 0 0 3 0 0 ]",
                        {"test.pbrt:4:7", "shape \"curve\""});
     expect_unsupported("LightSource \"infinite\" \"point3 portal\" [ 0 0 0 1 0 0 1 1 0 0 1 0 ]", {"portal"});
+}
+
+TEST(SceneMeaning, MediaMustMakeSense) {
+    const std::string fog = "MakeNamedMedium \"fog\" \"string type\" ";
+    // Whether something is in it or not.
+    for (const std::string& use : {std::string(), "\nMediumInterface \"fog\" \"\"\n" + kTriangle}) {
+        expect_error(fog + "\"homogenous\"" + use, 1, 37, {"unknown medium", "did you mean \"homogeneous\"?"});
+        expect_error(fog + "\"homogeneous\" \"rgb sigmaa\" [ 1 1 1 ] \"rgb sigma_s\" [ 0 0 0 ]" + use, 1, 51,
+                     {"\"sigmaa\" is unknown to medium \"homogeneous\"", "did you mean \"sigma_a\"?"});
+    }
+    const std::string in_fog = " \"rgb sigma_s\" [ 0 0 0 ]\nMediumInterface \"fog\" \"\"\n" + kTriangle;
+    expect_error(fog + "\"homogeneous\" \"rgb sigma_a\" [ 1 -1 0 ]" + in_fog, 1, 67, {"-1", "at least 0"});
+    expect_error(fog + "\"homogeneous\" \"float scale\" 1e20 \"rgb sigma_a\" [ 1 1e20 0 ]" + in_fog, 1, 86,
+                 {"not finite"});
 }
 
 TEST(SceneMeaning, SeveralErrorsAreToldTogether) {

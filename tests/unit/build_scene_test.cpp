@@ -197,5 +197,48 @@ NamedMaterial "both"
               EFFECT_MIX | EFFECT_CONDUCTOR | EFFECT_ROUGH | EFFECT_ANISOTROPIC | EFFECT_COAT | EFFECT_DIELECTRIC);
 }
 
+TEST(BuildScene, MediaThatAbsorb) {
+    const BuiltText text = build_text(R"(
+MakeNamedMedium "air" "string type" "homogeneous" "rgb sigma_a" [ 0 0 0 ] "rgb sigma_s" [ 0 0 0 ]
+MediumInterface "" "sea"
+Camera "perspective"
+WorldBegin
+MakeNamedMedium "sea" "string type" "homogeneous" "rgb sigma_a" [ 1 2 3 ] "rgb sigma_s" [ 0 0 0 ] "float scale" 2
+MakeNamedMedium "ink" "string type" "homogeneous" "rgb sigma_s" [ 0 0 0 ]
+MediumInterface "air" "sea"
+LightSource "point"
+LightSource "infinite"
+Shape "sphere"
+MediumInterface "ink"
+Shape "sphere"
+MediumInterface "" ""
+Shape "sphere"
+)");
+    ASSERT_EQ(text.all_errors(), "");
+    const Scene& scene = text.scene();
+    // Empty space, then media as they are used; one that does not absorb is empty space.
+    ASSERT_EQ(scene.media.size(), 3u);
+    EXPECT_EQ(scene.media[MEDIUM_VACUUM].sigma_a, vec4(0.0f));
+    EXPECT_EQ(scene.media[1].sigma_a, vec4(2.0f, 4.0f, 6.0f, 0.0f));
+    EXPECT_EQ(scene.media[2].sigma_a, vec4(1.0f, 1.0f, 1.0f, 0.0f));
+    EXPECT_EQ(scene.record.media.x, 1u);
+    EXPECT_EQ(scene.geometries[0].attributes.w, MEDIUM_VACUUM << 16 | 1u);
+    EXPECT_EQ(scene.geometries[1].attributes.w, 2u << 16 | 2u);
+    EXPECT_EQ(scene.geometries[2].attributes.w, MEDIUM_VACUUM);
+    ASSERT_EQ(scene.lights.size(), 2u);
+    for (const LightRecord& light : scene.lights) EXPECT_EQ(light.data.y >> 16, 1u);
+    ASSERT_TRUE(scene.effects.has(EFFECT_MEDIUM));
+    for (const EffectRequest& request : scene.effects.requests()) {
+        if (request.effect != EFFECT_MEDIUM) continue;
+        EXPECT_EQ(request.asked_by, "test.pbrt:6:1 (MakeNamedMedium \"homogeneous\")");
+    }
+    // A medium that nothing is in calls for nothing.
+    const BuiltText unused =
+        build_world("MakeNamedMedium \"ink\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [ 0 0 0 ]\n");
+    EXPECT_EQ(unused.all_errors(), "");
+    EXPECT_FALSE(unused.scene().effects.has(EFFECT_MEDIUM));
+    EXPECT_TRUE(unused.scene().media.empty());
+}
+
 }  // namespace
 }  // namespace lampyris

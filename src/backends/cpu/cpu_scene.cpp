@@ -39,6 +39,7 @@ CpuScene::CpuScene(const Scene& scene, CpuTracerKind tracer) {
                             data_of(scene.lights),
                             data_of(scene.distributions)};
     std::copy(std::begin(arrays), std::end(arrays), buffers_.begin());
+    buffers_[18] = data_of(scene.media);
     if (tracer == CpuTracerKind::bvh2) {
         bvh_ = std::make_unique<OwnBvh>(OwnBvh{build_bvh2(scene), scene.record, scene.instances});
         bvh_->record.counts.z = bvh_->bvh.roots[0];

@@ -8,10 +8,10 @@
 
 namespace lampyris::vulkan {
 
-// Set 0: the scene. Bindings 0 to 15 are those of core/kernel/bindings.h.
+// Set 0: the scene. Bindings 0 to 15 and 18 are those of core/kernel/bindings.h.
 constexpr uint32_t kTopLevelBinding = 16;    // acceleration structure, with ray query
 constexpr uint32_t kUnfinishedBinding = 17;  // see REPORT_UNFINISHED in core/kernel/prelude.h
-constexpr uint32_t kSceneBindings = 18;
+constexpr uint32_t kSceneBindings = 19;
 
 struct SceneBindings {
     std::vector<vk::Buffer> buffers = std::vector<vk::Buffer>(kSceneBindings);

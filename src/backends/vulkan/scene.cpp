@@ -51,6 +51,7 @@ VulkanScene::VulkanScene(std::shared_ptr<Context> context, std::shared_ptr<Memor
     add_array(13, scene.distributions, "distributions");
     add_array(14, bvh.nodes, "BVH nodes");
     add_array(15, bvh.triangles, "BVH primitives");
+    add_array(18, scene.media, "media");
     if (ray_query) {
         structures_ = std::make_unique<AccelerationStructures>(context, account, scene, staged);
         bindings_.top_level = structures_->top_level();

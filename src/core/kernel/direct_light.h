@@ -3,19 +3,21 @@
 #define LAMPYRIS_KERNEL_DIRECT_LIGHT
 
 // `weighted`: by multiple importance sampling with the directions that bsdf_sample chooses; a path that takes no such sample
-// wants the whole. wo: local frame.
-FN vec3 direct_light(IN(Surface) s, IN(Frame) frame, IN(Bsdf) bsdf, vec3 wo, float u_choice, vec2 u, bool weighted,
-                     INOUT(uint) rays) {
+// wants the whole. `medium`: through which s was reached. wo: local frame.
+FN vec3 direct_light(IN(Surface) s, IN(Frame) frame, IN(Bsdf) bsdf, vec3 wo, uint medium, float u_choice, vec2 u,
+                     bool weighted, INOUT(uint) rays) {
     LightSample light;
     if (!light_sample(s.position, u_choice, u, light)) return vec3(0.0f);
     vec3 wi = to_local(frame, light.wi);
     float density;
     vec3 f = bsdf_eval_pdf(bsdf, wo, wi, TRANSPORT_RADIANCE, density) * abs(wi.z);
     if (is_black(f)) return vec3(0.0f);
-    if (scene_occluded(s.position, s.error, s.ng, light.wi, light.distance, rays)) return vec3(0.0f);
+    vec3 arriving = scene_transmittance(s, light.wi, light.distance, medium, rays);
+    if (is_black(arriving)) return vec3(0.0f);
     float weight = 1.0f;
     if (weighted && light.is_delta == 0u) weight = power_heuristic(light.pdf, density);
-    return f * light.radiance * (weight / light.pdf);
+    vec3 reflected = f * light.radiance * (weight / light.pdf);
+    return HAS(EFFECT_MEDIUM) ? reflected * arriving : reflected;
 }
 
 #endif

@@ -31,12 +31,13 @@
     E(EFFECT_PROJECTION_LIGHTS, 23, "projection-and-goniometric-lights", "an image look-up per shadow ray")           \
     E(EFFECT_DEPTH_OF_FIELD, 24, "depth-of-field", "a lens sample per camera ray")                                    \
     E(EFFECT_NOISE, 25, "noise-textures", "gradient noise, eight hashed corners an octave")                           \
-    E(EFFECT_ANISOTROPIC, 26, "anisotropic-roughness", "a tangent from the texture coordinates at every hit")
+    E(EFFECT_ANISOTROPIC, 26, "anisotropic-roughness", "a tangent from the texture coordinates at every hit")         \
+    E(EFFECT_MEDIUM, 27, "medium-absorption", "three exponentials per ray and shadow ray in a medium that absorbs")
 
 #define LAMPYRIS_EFFECT_CONSTANT(constant, bit, name, cost) CONST uint constant = 1u << bit;
 LAMPYRIS_EFFECTS(LAMPYRIS_EFFECT_CONSTANT)
 #undef LAMPYRIS_EFFECT_CONSTANT
-CONST uint kAllEffects = 0x07ffffffu;
+CONST uint kAllEffects = 0x0fffffffu;
 // Sets that C++ kernels are built for (KERNEL_CPU_VARIANTS): a scene runs on the smallest one that has all of its effects.
 CONST uint kDiffuseEffects = EFFECT_SMOOTH_NORMALS | EFFECT_AREA_LIGHTS;
 CONST uint kGlassEffects =

@@ -10,6 +10,7 @@ struct Emission {
     vec3 direction;
     vec3 power;
     uint light;
+    uint medium;  // in which it starts
 };
 
 // The numbers that a photon's start takes: choice of the light, of the side that emits, place, direction.
@@ -40,6 +41,7 @@ FN bool emit_from_area(uint index, float u_side, vec2 u_place, vec2 u_direction,
     if (HAS(EFFECT_ALPHA)) radiance = radiance * light_alpha(light, place.position, place.ng, place.uv);
     e.power = radiance * (PI * sides / (place.pdf * light.emission.w));
     e.origin = offset_origin(place.position, place.error, place.ng, e.direction);
+    e.medium = light_medium(index, place.ng, e.direction);
     return true;
 }
 
@@ -64,6 +66,7 @@ FN bool emit_from_point(uint index, vec2 u_place, vec2 u_direction, INOUT(Emissi
     }
     e.direction = unit(e.direction);
     e.power = point_light_intensity(light, e.direction) / (pdf * light.emission.w);
+    e.medium = light_medium(index, e.direction, e.direction);
     return true;
 }
 
@@ -74,6 +77,7 @@ FN bool emit_photon(float u_choice, float u_side, vec2 u_place, vec2 u_direction
     e.power = vec3(0.0f);
     uint count = scene[0].lights.x;
     e.light = NONE;
+    e.medium = MEDIUM_VACUUM;
     if (count == 0u) return false;
     e.light = count == 1u ? 0u : find_interval(scene[0].lights.z, count, u_choice);
     uint kind = lights[e.light].data.x;
@@ -98,6 +102,11 @@ FN bool emit_photon(float u_choice, float u_side, vec2 u_place, vec2 u_direction
         found = true;
     } else if (HAS(EFFECT_POINT_LIGHTS) || HAS(EFFECT_PROJECTION_LIGHTS)) {
         found = emit_from_point(e.light, u_place, u_direction, e);
+    }
+    if (HAS(EFFECT_MEDIUM) && found &&
+        (kind == LIGHT_INFINITE || kind == LIGHT_INFINITE_IMAGE || kind == LIGHT_DISTANT)) {
+        e.medium = light_medium(e.light, e.direction, e.direction);
+        e.power *= medium_transmittance(e.medium, INFINITE_DISTANCE);
     }
     return found && !is_black(e.power) && is_finite3(e.power);
 }

@@ -186,29 +186,57 @@ FN bool intersect_scene(vec3 origin, vec3 direction, OUT(Surface) s, INOUT(uint)
     return intersect_scene_from(o, direction, s, hit, rays);
 }
 
-// Whether anything opaque lies between a surface point and a point `distance` away along the unit direction.
-FN bool scene_occluded(vec3 position, vec3 error, vec3 ng, vec3 direction, float distance, INOUT(uint) rays) {
+// Whether anything opaque lies between a surface point and a point `distance` away along the unit direction. If not,
+// `transmittance` is what the media on the way leave, `start` being the one in which the ray starts.
+FN bool shadow_ray(vec3 position, vec3 error, vec3 ng, vec3 direction, float distance, uint start,
+                   OUT(vec3) transmittance, INOUT(uint) rays) {
+    transmittance = vec3(1.0f);
     vec3 o = offset_origin(position, error, ng, direction);
     float t_max = distance >= INFINITE_DISTANCE ? INFINITE_DISTANCE : distance * (1.0f - SHADOW_EPSILON);
     if (!CALLED_FOR(EFFECT_ALPHA | EFFECT_INTERFACE)) {
         rays += 1u;
+        if (HAS(EFFECT_MEDIUM)) transmittance = medium_transmittance(start, distance);
         return trace_occluded(o, direction, t_max);
     }
+    uint medium = start;
+    float left = distance;  // to the light itself, of which t_max ends short
     for (uint i = 0u; i < MAX_PASSED_SURFACES; ++i) {
         Hit hit;
         Surface s;
         rays += 1u;
-        if (!trace_closest(o, direction, t_max, hit)) return false;
-        if (!surface_at(hit, o, direction, s)) return false;
-        bool passes = HAS(EFFECT_INTERFACE) && is_interface(s);
-        if (HAS(EFFECT_ALPHA) && !passes) passes = alpha_passes(s, o, direction);
-        if (!passes) return true;
+        bool found = t_max > 0.0f && trace_closest(o, direction, t_max, hit) && surface_at(hit, o, direction, s);
+        if (!found) {
+            if (HAS(EFFECT_MEDIUM)) transmittance *= medium_transmittance(medium, max(left, 0.0f));
+            return false;
+        }
+        bool passes = HAS(EFFECT_ALPHA) && alpha_passes(s, o, direction);
+        bool crosses = HAS(EFFECT_INTERFACE) && !passes && is_interface(s);
+        if (!passes && !crosses) return true;
+        if (HAS(EFFECT_MEDIUM)) {
+            transmittance *= medium_transmittance(medium, s.distance);
+            if (crosses) medium = medium_behind(s, direction, medium);
+        }
         o = offset_origin(s.position, s.error, s.ng, direction);
-        t_max = distance >= INFINITE_DISTANCE ? INFINITE_DISTANCE : t_max - s.distance;
-        if (!(t_max > 0.0f)) return false;
+        if (distance < INFINITE_DISTANCE) {
+            t_max -= s.distance;
+            left -= s.distance;
+        }
     }
     REPORT_UNFINISHED();
     return true;
+}
+
+FN bool scene_occluded(vec3 position, vec3 error, vec3 ng, vec3 direction, float distance, INOUT(uint) rays) {
+    vec3 transmittance;
+    return shadow_ray(position, error, ng, direction, distance, MEDIUM_VACUUM, transmittance, rays);
+}
+
+// The share of light that comes from a point `distance` away along the unit direction to s, which was reached through `medium`.
+FN vec3 scene_transmittance(IN(Surface) s, vec3 direction, float distance, uint medium, INOUT(uint) rays) {
+    vec3 transmittance;
+    uint start = medium_behind(s, direction, medium);
+    bool occluded = shadow_ray(s.position, s.error, s.ng, direction, distance, start, transmittance, rays);
+    return occluded ? vec3(0.0f) : transmittance;
 }
 
 #endif

@@ -31,6 +31,7 @@ struct GeometryRecord {
         ids;  // material, first light (light of primitive i is first + i) or NONE, alpha texture or NONE, transform (quadrics)
     uvec4
         attributes;  // first vertex in `normals`, first vertex in `uvs`, number of primitives, interior medium << 16 | exterior
+                     // (a transition between media where they differ)
     vec4 params;  // see the kinds
     vec4 alpha;   // x: constant alpha (used where the alpha texture is NONE); below 1 only where EFFECT_ALPHA
 };
@@ -99,6 +100,16 @@ struct MaterialRecord {
         floats;  // roughness u, v (of the base for coatedconductor, of the coat for coateddiffuse); z: eta (dielectrics, coats); w: g
     vec4 floats2;  // x: thickness of the coat; y, z: roughness u, v of coatedconductor's coat; w: unused
     uvec4 extra;   // coats: maxdepth, nsamples; mix: the two materials (x, y), amount texture (z; NONE: floats.x)
+};
+
+// ---- Media -----------------------------------------------------------------------------------------------------------
+
+// Entry of `media` that every scene may name and none needs: empty space. So 0 wherever a medium may stand is no medium.
+CONST uint MEDIUM_VACUUM = 0u;
+CONST uint MEDIUM_COUNT = 0x10000u;  // at most, this one included: two fit into an uint
+
+struct MediumRecord {
+    vec4 sigma_a;  // absorbed share per distance (1 / scene unit, per channel)
 };
 
 // ---- Textures --------------------------------------------------------------------------------------------------------
@@ -179,7 +190,7 @@ CONST uint LIGHT_TWO_SIDED = 1u;
 // Transforms of lights are the directive's own: that a goniometric image's pole is the light's y axis, and that images have
 // their first row on top, is the kernels' business.
 struct LightRecord {
-    uvec4 data;  // kind, flags, image or emission texture or NONE, transform (light space) or NONE
+    uvec4 data;  // kind, flags | medium << 16, image or emission texture or NONE, transform (light space) or NONE
     uvec4
         ids;  // area lights: geometry, primitive, instance (0); infinite images: offset of the distribution, width, height
     vec4
@@ -224,6 +235,7 @@ struct SceneRecord {
     uvec4
         lights;  // number of lights, number of infinite ones, offset of the choosing CDF in `distributions` (count + 1 floats), luminous power of all (a float's bits, W)
     uvec4 counts;  // geometries, instances, root node of the top-level BVH, effects that the scene calls for
+    uvec4 media;   // x: the camera's medium
     vec4 bounds;   // world's bounding sphere: centre, radius
 };
 

@@ -17,6 +17,7 @@
 #include "core/kernel/trace.h"
 #include "core/kernel/bsdf.h"
 #include "core/kernel/material.h"
+#include "core/kernel/medium.h"
 #include "core/kernel/intersect.h"
 #include "core/kernel/light.h"
 #include "core/kernel/emission.h"

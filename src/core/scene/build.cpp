@@ -50,6 +50,7 @@ uint64_t hash_of(const Scene& scene) {
     mix_hash(hash, scene.texels);
     mix_hash(hash, scene.lights);
     mix_hash(hash, scene.distributions);
+    mix_hash(hash, scene.media);
     return hash;
 }
 
@@ -71,6 +72,7 @@ BuiltScene build_scene(SceneDescription&& description, const BuildOptions& optio
     build_lights(context);
     context.textures.define_all();  // mistakes in textures that nothing uses are told, too
     context.check_unused_materials();
+    context.check_unused_media();
     finish_lights(context);
     scene.record.counts = {uint32_t(scene.geometries.size()), uint32_t(scene.instances.size()), kernel::NONE,
                            scene.effects.mask()};

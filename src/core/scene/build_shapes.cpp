@@ -19,7 +19,8 @@ uint32_t ShapeContext::add_geometry(uint32_t kind, uint32_t flags, uint32_t prim
         flags |= kernel::GEOMETRY_FLIP;
     record.data = {kind, flags, 0u, 0u};
     record.ids = {material, kernel::NONE, kernel::NONE, kernel::NONE};
-    record.attributes = {kernel::NONE, kernel::NONE, primitive_count, 0xffffffffu};
+    record.attributes = {kernel::NONE, kernel::NONE, primitive_count,
+                         build.medium(shape.interior_medium) << 16 | build.medium(shape.exterior_medium)};
     const FloatSlot alpha = read_float(build, reader, "alpha");
     record.ids.z = alpha.texture;
     record.alpha.x = alpha.value;
@@ -114,8 +115,6 @@ class ShapeBuilder {
                                        "a scale by 0, or numbers out of range?");
             return;
         }
-        context_.refuse_medium(shape.interior_medium);
-        context_.refuse_medium(shape.exterior_medium);
         ParameterReader reader(shape_registry().find_info(shape.type)->parameters, shape, context_.diagnostics);
         ShapeContext context{context_,
                              shape,

@@ -47,13 +47,6 @@ uint32_t BuildContext::add_transform(const glm::mat4& to, Location where) {
     return uint32_t(scene.transforms.size() - 1);
 }
 
-void BuildContext::refuse_medium(uint32_t medium) {
-    if (medium >= description.media.size() || !refused_media.insert(medium).second) return;
-    diagnostics.unsupported(description.media[medium].location,
-                            fmt::format("participating medium \"{}\"", description.media[medium].name),
-                            "empty space takes its place if skipped");
-}
-
 void BuildContext::refuse_motion(const AnimatedTransform& transform, Location where) {
     if (transform.animated())
         diagnostics.unsupported(where, "motion blur (an animated transform)",
@@ -126,6 +119,11 @@ Registry<MaterialFactory>& material_registry() {
                                               "How surfaces scatter light: `Material \"name\"`, `MakeNamedMaterial`.");
     return registry;
 }
+Registry<MediumFactory>& medium_registry() {
+    static Registry<MediumFactory> registry("medium",
+                                            "What fills space: `MakeNamedMedium \"name\"`, `MediumInterface`.");
+    return registry;
+}
 Registry<LightFactory>& light_registry() {
     static Registry<LightFactory> registry("light",
                                            "Sources of light: `LightSource \"name\"`; area lights: `AreaLightSource`.");
@@ -148,6 +146,9 @@ RegisterShape::RegisterShape(const char* name, const char* summary, ParameterSpe
 RegisterMaterial::RegisterMaterial(const char* name, const char* summary, ParameterSpecs specs,
                                    MaterialFactory factory) {
     material_registry().add({name, summary, std::move(specs)}, factory);
+}
+RegisterMedium::RegisterMedium(const char* name, const char* summary, ParameterSpecs specs, MediumFactory factory) {
+    medium_registry().add({name, summary, std::move(specs)}, factory);
 }
 RegisterLight::RegisterLight(const char* name, const char* summary, ParameterSpecs specs, LightFactory factory) {
     light_registry().add({name, summary, std::move(specs)}, factory);

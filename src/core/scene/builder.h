@@ -1,5 +1,5 @@
 // What the parts of the scene's builder share: the registries of scene plugins, and the context that a plugin's factory
-// gets. A plugin is one file in shapes/, materials/, textures/, lights/, cameras/ or filters/ whose last line registers it.
+// gets. A plugin is one file in shapes/, materials/, textures/, media/, lights/, cameras/ or filters/ whose last line registers it.
 #pragma once
 
 #include "core/parameters.h"
@@ -13,7 +13,6 @@
 
 #include <cstdint>
 #include <map>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -64,9 +63,11 @@ struct BuildContext {
     std::string resolve(const std::string& filename) const;
     // Appends a transform and returns its index. Errors for a singular one are reported at `where`.
     uint32_t add_transform(const glm::mat4& to, Location where);
-    // Diagnostics::unsupported for a medium that something is in; kNone is empty space. Once for each medium.
-    void refuse_medium(uint32_t medium);
-    std::set<uint32_t> refused_media;
+    // The record of SceneDescription::media[i] (kNone: empty space), built when first asked for.
+    uint32_t medium(uint32_t description_index);
+    std::map<uint32_t, uint32_t> built_media;
+    // As with materials.
+    void check_unused_media();
     // Diagnostics::unsupported if the transform moves.
     void refuse_motion(const AnimatedTransform& transform, Location where);
 };
@@ -128,6 +129,17 @@ struct MaterialContext {
 using MaterialFactory = void (*)(MaterialContext&);
 Registry<MaterialFactory>& material_registry();
 
+struct MediumContext {
+    BuildContext& build;
+    MediumDescription& medium;
+    ParameterReader& reader;
+    kernel::MediumRecord& record;
+    // Diagnostics::unsupported for a medium that does more than absorb; empty space takes its place.
+    void refuse(std::string_view parameter, const std::string& with_what, const std::string& hint);
+};
+using MediumFactory = void (*)(MediumContext&);
+Registry<MediumFactory>& medium_registry();
+
 struct LightContext {
     BuildContext& build;
     LightDescription& light;
@@ -164,6 +176,9 @@ struct RegisterShape {
 // Materials get "displacement" and "normalmap".
 struct RegisterMaterial {
     RegisterMaterial(const char* name, const char* summary, ParameterSpecs specs, MaterialFactory factory);
+};
+struct RegisterMedium {
+    RegisterMedium(const char* name, const char* summary, ParameterSpecs specs, MediumFactory factory);
 };
 struct RegisterLight {
     RegisterLight(const char* name, const char* summary, ParameterSpecs specs, LightFactory factory);

@@ -80,7 +80,7 @@ void build_view(BuildContext& context) {
                      factory(filter);
                  });
     CameraDescription& camera = description.camera;
-    context.refuse_medium(camera.medium);
+    context.scene.record.media = {context.medium(camera.medium), 0u, 0u, 0u};
     const std::string asked_by = context.place(camera, "Camera");
     if (camera.world_from_camera.animated()) context.refuse_motion(camera.world_from_camera, camera.location);
     if (!invertible(camera.world_from_camera.matrix[0]))

@@ -31,12 +31,14 @@ FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, IN(Sampler) numbers, 
     bool first = true;
     int depth = 0;
     uint passed = 0u;
+    uint medium = camera_medium();
     bool alive = true;
     while (alive) {
         alive = false;  // every way out of the loop but its end leaves it so
         Surface s;
         if (!intersect_scene(origin, direction, s, rays)) {
             if (HAS(EFFECT_ENVIRONMENT)) {
+                if (HAS(EFFECT_MEDIUM)) throughput *= medium_transmittance(medium, INFINITE_DISTANCE);
                 vec3 emitted = environment_radiance(direction);
                 if (!is_black(emitted)) {
                     float weight =
@@ -46,6 +48,7 @@ FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, IN(Sampler) numbers, 
             }
             break;
         }
+        if (HAS(EFFECT_MEDIUM)) throughput *= medium_transmittance(medium, s.distance);
         if (HAS(EFFECT_AREA_LIGHTS) && s.light != NONE) {
             vec3 emitted = light_emission(s, -direction);
             if (!is_black(emitted)) {
@@ -56,6 +59,7 @@ FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, IN(Sampler) numbers, 
         }
         if (HAS(EFFECT_INTERFACE) && is_interface(s)) {
             origin = offset_origin(s.position, s.error, s.ng, direction);
+            medium = medium_behind(s, direction, medium);
             if (++passed > MAX_PASSED_SURFACES) {
                 REPORT_UNFINISHED();
                 break;
@@ -82,7 +86,7 @@ FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, IN(Sampler) numbers, 
             float u_light = 0.0f;
             if (scene[0].lights.x > 1u) u_light = sample_1d_at(numbers, dimension);
             vec2 u_light_point = sample_2d_at(numbers, dimension + 1u);
-            radiance += throughput * direct_light(s, frame, bsdf, wo, u_light, u_light_point, true, rays);
+            radiance += throughput * direct_light(s, frame, bsdf, wo, medium, u_light, u_light_point, true, rays);
         }
 
         BsdfSample next;
@@ -98,6 +102,7 @@ FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, IN(Sampler) numbers, 
         direction = unit(direction);
         previous = s.position;
         origin = offset_origin(s.position, s.error, s.ng, direction);
+        medium = medium_behind(s, direction, medium);
 
         float survival = max_component(throughput) * eta_scale;
         if (!(survival > 0.0f)) break;

@@ -38,6 +38,7 @@ FN void sppm_eye_path(IN(CameraSample) camera, INOUT(FilmPixel) pixel, INOUT(Spp
     bool first = true;
     int depth = 0;
     uint passed = 0u;
+    uint medium = camera_medium();
     bool alive = true;
     place = vec4(0.0f, 0.0f, 0.0f, -1.0f);
     while (alive) {
@@ -45,14 +46,17 @@ FN void sppm_eye_path(IN(CameraSample) camera, INOUT(FilmPixel) pixel, INOUT(Spp
         Surface s;
         Hit met;
         if (!intersect_scene_from(origin, direction, s, met, rays)) {
+            if (HAS(EFFECT_MEDIUM)) throughput *= medium_transmittance(medium, INFINITE_DISTANCE);
             if (HAS(EFFECT_ENVIRONMENT)) radiance += throughput * environment_radiance(direction);
             break;
         }
+        if (HAS(EFFECT_MEDIUM)) throughput *= medium_transmittance(medium, s.distance);
         // No vertex before this one sampled lights: what is emitted counts in full.
         if (HAS(EFFECT_AREA_LIGHTS) && s.light != NONE) radiance += throughput * light_emission(s, -direction);
         if (HAS(EFFECT_INTERFACE) && is_interface(s)) {
             way += s.distance;
             origin = offset_origin(s.position, s.error, s.ng, direction);
+            medium = medium_behind(s, direction, medium);
             if (++passed > MAX_PASSED_SURFACES) {
                 REPORT_UNFINISHED();
                 break;
@@ -87,7 +91,7 @@ FN void sppm_eye_path(IN(CameraSample) camera, INOUT(FilmPixel) pixel, INOUT(Spp
                 float u_light = 0.0f;
                 if (scene[0].lights.x > 1u) u_light = sample_1d_at(camera.numbers, dimension);
                 vec2 u_point = sample_2d_at(camera.numbers, dimension + 1u);
-                radiance += throughput * direct_light(shaded, frame, bsdf, wo, u_light, u_point, false, rays);
+                radiance += throughput * direct_light(shaded, frame, bsdf, wo, medium, u_light, u_point, false, rays);
             }
             float first_radius = params[0].radius;
             if (!(first_radius > 0.0f)) first_radius = params[0].footprint * pixel_footprint(way);
@@ -114,6 +118,7 @@ FN void sppm_eye_path(IN(CameraSample) camera, INOUT(FilmPixel) pixel, INOUT(Spp
         if ((next.lobe & LOBE_TRANSMISSION) != 0u) eta_scale *= sqr(next.eta);
         direction = unit(to_world(frame, next.wi));
         origin = offset_origin(s.position, s.error, s.ng, direction);
+        medium = medium_behind(s, direction, medium);
 
         float survival = max_component(throughput) * eta_scale;
         if (!(survival > 0.0f)) break;

@@ -43,13 +43,17 @@ KERNEL(sppm_photons) {
     uint rays = 0u;
     int depth = 0;
     uint passed = 0u;
+    uint medium = start.medium;
     bool alive = true;
     while (alive) {
         alive = false;
         Surface s;
         if (!intersect_scene(origin, direction, s, rays)) break;
+        if (HAS(EFFECT_MEDIUM)) power *= medium_transmittance(medium, s.distance);
+        if (HAS(EFFECT_MEDIUM) && is_black(power)) break;
         if (HAS(EFFECT_INTERFACE) && is_interface(s)) {
             origin = offset_origin(s.position, s.error, s.ng, direction);
+            medium = medium_behind(s, direction, medium);
             if (++passed > MAX_PASSED_SURFACES) {
                 REPORT_UNFINISHED();
                 break;
@@ -92,6 +96,7 @@ KERNEL(sppm_photons) {
         }
         direction = onward;
         origin = offset_origin(s.position, s.error, ng, direction);
+        medium = medium_behind(s, direction, medium);
         alive = true;
     }
     if (alive) REPORT_UNFINISHED();  // the driver ended the loop
