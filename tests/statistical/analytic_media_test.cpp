@@ -1,0 +1,110 @@
+// Media that absorb, against Beer and Lambert's law (scenes/analytic/medium-*; each scene's comment derives its image).
+#include "support/analytic.h"
+
+namespace lampyris::test {
+namespace {
+
+using Sigma = std::array<double, 3>;  // absorption per distance and channel
+
+// How much longer than along the axis the way through a layer is: rays of the perspective scenes pass (px, py, 1).
+double obliqueness(double x, double y, double width) {
+    return std::sqrt(1.0 + std::pow(2.0 * x / width - 1.0, 2.0) + std::pow(2.0 * y / width - 1.0, 2.0));
+}
+
+// Some 100 roundings of single precision; an optical depth of 4 multiplies those of the distance.
+constexpr double kBound = 1e-5;
+
+TEST_P(AnalyticTest, SlabsAbsorbByThicknessAndAngle) {
+    const Rendered& image = render("medium-slab", 4);
+    const Sigma sigma{0.2, 0.5, 1.0};
+    expect_exact(
+        [&](double x, double y, int c) { return std::exp(-sigma[size_t(c)] * obliqueness(x, y, image.width)); },
+        kBound);
+}
+
+TEST_P(AnalyticTest, MediaNestAroundTheCamera) {
+    const Rendered& image = render("medium-nested", 4);
+    const Sigma air{0.05, 0.1, 0.2}, outer{0.3, 0.1, 0.2}, inner{0.1, 0.4, 0.8};
+    expect_exact(
+        [&](double x, double y, int c) {
+            const double depth = 2.0 * air[size_t(c)] + 2.0 * outer[size_t(c)] + inner[size_t(c)];
+            return std::exp(-depth * obliqueness(x, y, image.width));
+        },
+        kBound);
+}
+
+// The distance from the axis that a pixel of the orthographic scenes looks at.
+double from_axis(double x, double y, double width) { return std::hypot(2.0 * x / width - 1.0, 2.0 * y / width - 1.0); }
+
+TEST_P(AnalyticTest, SpheresAbsorbAlongTheirChords) {
+    const Rendered& image = render("medium-sphere", 4);
+    const Sigma sigma{0.5, 1.0, 2.0};
+    int inside = 0;
+    expect_exact(
+        [&](double x, double y, int c) {
+            const double b = from_axis(x, y, image.width);
+            inside += b < 0.75;
+            return b < 0.75 ? std::exp(-2.0 * sigma[size_t(c)] * std::sqrt(0.5625 - b * b)) : 1.0;
+        },
+        kBound);
+    EXPECT_GT(inside, 3 * 100);
+}
+
+TEST_P(AnalyticTest, ColouredGlassAbsorbsBetweenReflections) {
+    const Rendered& image = render("medium-ball", 256);
+    const Sigma sigma{0.1, 0.3, 1.0};
+    expect_mean(
+        [&](double x, double y, int c) {
+            constexpr double kIndex = 1.5, kRadius = 0.97;
+            const double sine = from_axis(x, y, image.width) / kRadius;
+            if (sine >= 1.0) return 1.0;
+            const double outside = std::sqrt(1.0 - sine * sine),
+                         within = std::sqrt(1.0 - sine * sine / kIndex / kIndex);
+            const double parallel = (kIndex * outside - within) / (kIndex * outside + within);
+            const double across = (outside - kIndex * within) / (outside + kIndex * within);
+            const double reflected = (parallel * parallel + across * across) / 2.0;
+            const double left = std::exp(-2.0 * sigma[size_t(c)] * kRadius * within);
+            return reflected + (1.0 - reflected) * (1.0 - reflected) * left / (1.0 - reflected * left);
+        },
+        0.02);
+}
+
+// What the slabs of medium-shadow and medium-sun leave of light whose way through them is `slant` times their thickness.
+double through_slabs(double slant, int c) {
+    const Sigma outer{1.0, 2.0, 4.0}, inner{8.0, 4.0, 2.0};
+    return std::exp(-slant * (0.15 * outer[size_t(c)] + 0.05 * inner[size_t(c)]));
+}
+
+TEST_P(AnalyticTest, ShadowRaysPassMediaToAPoint) {
+    render("medium-shadow", 4);
+    const auto to_light = [&](double x, double y) { return glm::dvec3(0.3, 0.9, -0.2) - floor_point(x, y); };
+    const Expected clear = floor_radiance([](glm::dvec3 p) {
+        const glm::dvec3 to = glm::dvec3(0.3, 0.9, -0.2) - p;
+        return to.y / std::pow(glm::dot(to, to), 1.5);
+    });
+    expect_exact(
+        [&](double x, double y, int c) {
+            const glm::dvec3 to = to_light(x, y);
+            return clear(x, y, c) * through_slabs(glm::length(to) / to.y, c);
+        },
+        kBound);
+    render("medium-inside", 4);
+    const Sigma water{0.5, 1.0, 2.0};
+    expect_exact(
+        [&](double x, double y, int c) {
+            return clear(x, y, c) * std::exp(-water[size_t(c)] * (glm::length(to_light(x, y)) + 0.25));
+        },
+        kBound);
+}
+
+TEST_P(AnalyticTest, ShadowRaysPassMediaToInfinity) {
+    render("medium-sun", 4);
+    const double cosine = 3.0 / std::sqrt(14.0);
+    const Expected clear = floor_radiance([&](glm::dvec3) { return cosine; });
+    expect_exact([&](double x, double y, int c) { return clear(x, y, c) * through_slabs(1.0 / cosine, c); }, kBound);
+}
+
+LAMPYRIS_ANALYTIC_TESTS();
+
+}  // namespace
+}  // namespace lampyris::test
