@@ -26,7 +26,8 @@ install(EXPORT LampyrisTargets NAMESPACE Lampyris:: DESTINATION ${package_dir})
 install(DIRECTORY src/core DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lampyris FILES_MATCHING PATTERN *.h PATTERN *.glsl)
 # Photon maps and their consumers, for those of plugins to be built with.
 install(DIRECTORY src/accel src/integrators DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lampyris
-  FILES_MATCHING PATTERN *.gather.h PATTERN *.consumer.h PATTERN *.layout.h PATTERN *.params.h)
+  FILES_MATCHING PATTERN *.gather.h PATTERN *.consumer.h PATTERN *.layout.h PATTERN *.params.h
+  PATTERN *.functions.h)
 install(FILES ${abi_header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lampyris/core)
 set(LAMPYRIS_KERNELS ${CMAKE_INSTALL_INCLUDEDIR}/lampyris)
 configure_package_config_file(cmake/LampyrisConfig.cmake.in ${PROJECT_BINARY_DIR}/LampyrisConfig.cmake

@@ -1,7 +1,7 @@
 #include "integrators/sppm/photon_mapping.h"
 
 #include "core/error.h"
-#include "integrators/sppm/sppm_host.h"
+#include "integrators/sppm/photon_host.h"
 
 #include <fmt/format.h>
 
@@ -19,13 +19,6 @@ constexpr const char* kRadius = "integrators/sppm/sppm_radius.kernel.h";
 constexpr const char* kPhotons = "integrators/sppm/sppm_photons.kernel.h";
 constexpr const char* kResolve = "integrators/sppm/sppm_resolve.kernel.h";
 constexpr const char* kConsumer = "integrators/sppm/sppm.consumer.h";
-
-// The inverse of ordered_bits (sppm_radius.kernel.h).
-float from_ordered_bits(uint32_t bits) {
-    return std::bit_cast<float>((bits & 0x80000000u) != 0u ? bits & 0x7fffffffu : ~bits);
-}
-
-using Counters = std::array<uint32_t, kernel::SPPM_COUNTERS>;
 
 class PhotonMapping {
  public:
@@ -54,7 +47,7 @@ class PhotonMapping {
         window_ = device_.create_buffer(sizeof(kernel::FilmWindow), "film window");
         params_buffer_ = argument_buffer(device_, params_, "parameters");
         pass_buffer_ = device_.create_buffer(sizeof(kernel::SppmPass), "pass");
-        counters_ = device_.create_buffer(sizeof(Counters), "counters");
+        counters_ = device_.create_buffer(sizeof(SppmCounters), "counters");
         hits_ = device_.create_buffer(points * sizeof(kernel::SppmHit), "hit points");
         queries_ = device_.create_buffer(points * sizeof(glm::vec4), "places of hit points");
         gathered_ = device_.create_buffer(points * sizeof(glm::vec4), "gathered flux");
@@ -89,19 +82,18 @@ class PhotonMapping {
     void one_pass(uint64_t pass) {
         pass_.photons = {0, capacity_, uint32_t(pass), session_.seed};
         pass_.counts = {paths_, session_.sampler, points_, bounces_};
+        pass_.keep.x =
+            params_.direct == kernel::SPPM_DIRECT_PHOTONS ? kernel::SPPM_KEEP_ALL : kernel::SPPM_KEEP_BOUNCED;
         pass_.scale.x = float(memoryless_scale(pass, double(params_.alpha)));
-        const Counters zero{};
+        const SppmCounters zero{};
         counters_->upload(&zero, sizeof zero);
         pass_buffer_->upload(&pass_, sizeof pass_);
         if (!fixed_ || !followed_) follow_eye_paths(pass);
         run(kRadius, *radius_, "eye_pass",
             std::array{params_buffer_, pass_buffer_, hits_, queries_, statistics_, gathered_, counters_, biases_},
             points_ * pixels_);
-        const Counters box = download_counters();
-        for (int c = 0; c < 3; ++c) {
-            pass_.low[c] = from_ordered_bits(~box[kernel::SPPM_LOW + uint32_t(c)]);
-            pass_.high[c] = from_ordered_bits(box[kernel::SPPM_HIGH + uint32_t(c)]);
-        }
+        const SppmCounters box = download_counters();
+        unpack_box(box, pass_);
         largest_radius_ = std::bit_cast<float>(box[kernel::SPPM_RADIUS]);
         // No eye path ends where photons would be of use: there is nothing to emit them for.
         if (box[kernel::SPPM_RADIUS] > 0) photon_pass();
@@ -131,7 +123,7 @@ class PhotonMapping {
             counters_->upload(none, sizeof none);
             run(kPhotons, *photons_, "photon_tracing", std::array{pass_buffer_, params_buffer_, store_, counters_},
                 count);
-            const Counters counters = download_counters();
+            const SppmCounters counters = download_counters();
             const uint32_t stored = counters[kernel::SPPM_STORED];
             session_.photons.rays += counters[kernel::SPPM_RAYS];
             if (stored > capacity_) {
@@ -171,53 +163,21 @@ class PhotonMapping {
         map_->gather(consumer_, queries_, 0, points_ * pixels_);
     }
 
-    // Adds what the kernel took (by timestamps, on Vulkan) to a phase.
     template <size_t n>
     void run(const char* file, const Kernel& kernel, const char* phase, const std::array<BufferHandle, n>& buffers,
              uint32_t count) {
-        const double before = kernel_seconds(file);
-        device_.run(kernel, session_.device_scene.get(), buffers, 0, count);
-        session_.add_phase(phase, kernel_seconds(file) - before);
-    }
-    double kernel_seconds(const char* file) const {
-        const std::map<std::string, double> seconds = device_.statistics().kernel_s;
-        const auto found = seconds.find(file);
-        return found == seconds.end() ? 0.0 : found->second;
+        run_in_phase(session_, file, kernel, phase, buffers, count);
     }
 
-    Counters download_counters() const {
-        Counters counters{};
-        counters_->download(&counters, sizeof counters);
-        return counters;
-    }
+    SppmCounters download_counters() const { return download_sppm_counters(*counters_); }
 
     void finish() {
-        const PhotonMapStatistics statistics = map_->statistics();
-        session_.add_phase("construction", statistics.construction_kernel_s);
-        session_.add_phase("gathering", statistics.gathering_kernel_s);
+        add_map_statistics(session_, *map_);
         PhotonStatistics& photons = session_.photons;
         photons.map_parameters = show_photon_map(parse_plugin_choice(session_.photon_map).name, *map_);
-        photons.map_bytes = map_->memory_bytes();
-        photons.lost = statistics.lost_photons;
         if (const auto load = map_->bucket_load())
             photons.bucket_load_mean = load->mean, photons.bucket_load_max = load->max;
-        std::vector<glm::vec4> places(size_t(points_) * pixels_);
-        queries_->download(places.data(), places.size() * sizeof(glm::vec4));
-        std::vector<kernel::SppmHit> hits(places.size());
-        hits_->download(hits.data(), hits.size() * sizeof(kernel::SppmHit));
-        double sum = 0.0, initial = 0.0;
-        size_t count = 0;
-        photons.radius_min = std::numeric_limits<double>::infinity();
-        for (size_t i = 0; i < places.size(); ++i) {
-            if (places[i].w < 0.0f) continue;
-            const double radius = double(places[i].w);
-            sum += radius, initial += double(hits[i].radiance.w), ++count;
-            photons.radius_min = std::min(photons.radius_min, radius);
-            photons.radius_max = std::max(photons.radius_max, radius);
-        }
-        photons.radius_mean = count ? sum / double(count) : 0.0;
-        photons.radius_initial = count ? initial / double(count) : 0.0;
-        if (!count) photons.radius_min = 0.0;
+        note_radii(session_, *queries_, *hits_, size_t(points_) * pixels_);
     }
 
     RenderSession& session_;

@@ -18,6 +18,7 @@ struct SppmPass {
     vec4 low;       // photons are kept within this box
     vec4 high;
     vec4 scale;  // x: squared radius over that of the first pass, where passes have the same one (memoryless)
+    uvec4 keep;  // x: which photons are kept: SPPM_KEEP_*
 };
 
 // Words of `counters`.
@@ -36,5 +37,9 @@ CONST uint SPPM_SHARED = 0u;
 CONST uint SPPM_MEMORYLESS = 1u;
 CONST uint SPPM_DIRECT_NEE = 0u;
 CONST uint SPPM_DIRECT_PHOTONS = 1u;
+
+CONST uint SPPM_KEEP_ALL = 0u;
+CONST uint SPPM_KEEP_BOUNCED = 1u;  // not those that come straight from a light
+CONST uint SPPM_KEEP_CAUSTIC = 2u;  // those that come from a light over specular (followed) surfaces only, one or more
 
 #endif

@@ -64,11 +64,12 @@ KERNEL(sppm_photons) {
         vec3 ng = s.ng;
         Frame frame;
         Bsdf bsdf = material_bsdf(s, -direction, frame);
-        bool direct = depth == 0;
-        if (visible_action(bsdf, params[0].glossy) != VISIBLE_FOLLOW &&
-            (!direct || params[0].direct == SPPM_DIRECT_PHOTONS) && in_box(s.position, pass.low, pass.high))
+        uint action = visible_action(bsdf, params[0].glossy);
+        if (action != VISIBLE_FOLLOW && (depth > 0 || pass.keep.x == SPPM_KEEP_ALL) &&
+            in_box(s.position, pass.low, pass.high))
             keep_photon(s.position, direction, power, photon_key(index, uint(depth), pass.counts.w));
-        if (depth >= params[0].maxdepth) break;
+        // What is reflected here is no caustic, but for the smooth coat over it: that is known once a lobe is chosen.
+        if (depth >= params[0].maxdepth || (pass.keep.x == SPPM_KEEP_CAUSTIC && action == VISIBLE_GATHER)) break;
         uint dimension = EMISSION_DIMENSIONS + uint(depth) * PHOTON_VERTEX_DIMENSIONS;
         depth += 1;
 
@@ -78,6 +79,7 @@ KERNEL(sppm_photons) {
         float u_lobe = 0.0f;
         if (bsdf_chooses_lobe(bsdf)) u_lobe = sample_1d_at(numbers, dimension);
         if (!bsdf_sample(bsdf, wo, u_lobe, sample_2d_at(numbers, dimension + 1u), TRANSPORT_IMPORTANCE, next)) break;
+        if (pass.keep.x == SPPM_KEEP_CAUSTIC && action == VISIBLE_SPLIT && (next.lobe & LOBE_SPECULAR) == 0u) break;
         vec3 onward = unit(to_world(frame, next.wi));
         // Shading normals are not symmetric (Veach 1997, equation 5.19): |wi.Ns wo.Ng| / (|wi.Ng| |wo.Ns|), of which |wo.Ns|
         // cancels the cosine of the weight. wi is towards the light, wo onward.

@@ -1,0 +1,65 @@
+// A hit point as consumers of photons see it: the surface found again from its record, and what a photon is worth there.
+#ifndef LAMPYRIS_SPPM_HIT_POINT
+#define LAMPYRIS_SPPM_HIT_POINT
+
+#include "core/kernel/visible_point.h"
+#include "integrators/sppm/sppm.layout.h"
+
+struct HitPoint {
+    Bsdf bsdf;
+    Frame frame;
+    vec3 wo;  // local
+    vec3 ng;  // on the side that the eye is on
+    uint both_sides;
+};
+
+FN HitPoint no_hit_point() {
+    HitPoint p;
+    p.bsdf = bsdf_interface();
+    p.frame = frame_from_z(vec3(0.0f, 0.0f, 1.0f));
+    p.wo = vec3(0.0f);
+    p.ng = vec3(0.0f);
+    p.both_sides = 0u;
+    return p;
+}
+
+FN vec3 hit_direction(IN(SppmHit) h) {
+    return vec3(uintBitsToFloat(h.direction.x), uintBitsToFloat(h.direction.y), uintBitsToFloat(h.direction.z));
+}
+
+FN Surface hit_surface(IN(SppmHit) h) {
+    Hit hit;
+    hit.instance = h.origin.w;
+    hit.geometry = h.direction.w;
+    hit.primitive = h.more.x;
+    vec3 origin = vec3(uintBitsToFloat(h.origin.x), uintBitsToFloat(h.origin.y), uintBitsToFloat(h.origin.z));
+    Surface s = no_surface();
+    surface_at(hit, origin, hit_direction(h), s);
+    return s;
+}
+
+FN HitPoint hit_point(IN(SppmHit) h) {
+    vec3 direction = hit_direction(h);
+    Surface s = hit_surface(h);
+    HitPoint p;
+    p.ng = dot3(s.ng, direction) > 0.0f ? -s.ng : s.ng;
+    p.bsdf = material_bsdf(s, -direction, p.frame);
+    p.wo = to_local(p.frame, -direction);
+    p.both_sides = bsdf_transmits(p.bsdf) ? 1u : 0u;
+    return p;
+}
+
+// The BSDF times the photon's power; w: the photons that it stands for. Nothing where it is none of this side's.
+FN vec4 hit_point_reflects(IN(HitPoint) p, IN(PhotonRecord) photon, float weight) {
+    vec3 incident = -photon_direction(photon);
+    float cosine = dot3(incident, p.ng);
+    // Photons on the back of a thin wall are none of this side's.
+    if (p.both_sides == 0u && !(cosine > 0.0f)) return vec4(0.0f);
+    vec3 wi = to_local(p.frame, incident);
+    vec3 f = bsdf_eval(p.bsdf, p.wo, wi, TRANSPORT_RADIANCE);
+    // Photons are counted on the geometric surface, the BSDF wants the shading normal's cosine (clamped where grazing).
+    vec3 value = f * photon_power(photon) * (weight * abs(wi.z) / max(abs(cosine), GRAZING_COSINE));
+    return vec4(value.x, value.y, value.z, weight);
+}
+
+#endif
