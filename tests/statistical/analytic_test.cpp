@@ -235,7 +235,7 @@ TEST_P(AnalyticTest, ThinLensKeepsTheLight) {
     EXPECT_LT(std::abs(middle), kZLimit * std::sqrt(middle_variance));
 }
 
-LAMPYRIS_ANALYTIC_TESTS();
+LAMPYRIS_ANALYTIC_TESTS(AnalyticTest);
 
 }  // namespace
 }  // namespace lampyris::test

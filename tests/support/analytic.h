@@ -135,12 +135,12 @@ inline Expected constant(double value) {
     return [value](double, double, int) { return value; };
 }
 
-// Every test of the fixture, on every backend.
-#define LAMPYRIS_ANALYTIC_TESTS()                                                                                 \
-    INSTANTIATE_TEST_SUITE_P(Backends, AnalyticTest, testing::ValuesIn(usable_backends()), [](const auto& info) { \
-        std::string name = info.param;                                                                            \
-        std::replace(name.begin(), name.end(), '-', '_');                                                         \
-        return name;                                                                                              \
+// Every test of a fixture, on every backend.
+#define LAMPYRIS_ANALYTIC_TESTS(fixture)                                                                     \
+    INSTANTIATE_TEST_SUITE_P(Backends, fixture, testing::ValuesIn(usable_backends()), [](const auto& info) { \
+        std::string name = info.param;                                                                       \
+        std::replace(name.begin(), name.end(), '-', '_');                                                    \
+        return name;                                                                                         \
     })
 
 }  // namespace lampyris::test
