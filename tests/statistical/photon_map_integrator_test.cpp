@@ -3,8 +3,7 @@
 // The spread of the mean over seeds is the error of a mean: a seed has its own photons. False alarms: each z-test has a rate of
 // 1e-6, at fixed seeds. What a radius blurs is allowed for where it is said so.
 #include "core/image/image_io.h"
-#include "support/render.h"
-#include "support/statistics.h"
+#include "support/runs.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -15,32 +14,6 @@
 
 namespace lampyris::test {
 namespace {
-
-constexpr double kAlpha = 1e-6;
-const std::string kScenes = std::string(LAMPYRIS_SOURCE_DIR) + "/scenes/";
-
-RenderSettings settings_of(const std::string& backend, const std::string& integrator, uint32_t passes, int size) {
-    RenderSettings s;
-    s.backend = backend;
-    s.integrator = integrator;
-    s.samples = passes;
-    if (size) s.resolution = {size, size};
-    return s;
-}
-
-Mean mean_of_runs(const std::string& file, RenderSettings settings, int runs) {
-    Mean mean;
-    for (int i = 0; i < runs; ++i) {
-        settings.seed = uint32_t(100 + i);
-        mean.add(render_file(kScenes + file, settings).mean_luminance());
-    }
-    return mean;
-}
-
-void expect_mean(const Mean& mean, double expected, double tolerance) {
-    EXPECT_LT(std::abs(mean.value() - expected), normal_threshold(kAlpha) * mean.error() + tolerance)
-        << mean.value() << " +- " << mean.error() << " against " << expected;
-}
 
 double reference_mean(const std::string& file) {
     const Image image = read_image(kScenes + file + ".exr");
@@ -53,11 +26,8 @@ double reference_mean(const std::string& file) {
 }
 
 class PhotonMapIntegrator : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Backends, PhotonMapIntegrator, testing::ValuesIn(usable_backends()), [](const auto& info) {
-    std::string name = info.param;
-    std::replace(name.begin(), name.end(), '-', '_');
-    return name;
-});
+INSTANTIATE_TEST_SUITE_P(Backends, PhotonMapIntegrator, testing::ValuesIn(usable_backends()),
+                         [](const auto& info) { return name_of(info.param); });
 
 // Walls of albedo 1/2 that emit 1 show 2 everywhere. A disk that reaches past an edge trades a part of its own wall for a part of
 // the next: 1 % is allowed for that.

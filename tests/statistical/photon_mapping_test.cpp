@@ -3,8 +3,7 @@
 // The spread of the mean over seeds is the error of a mean. False alarms: each z-test has a rate of 1e-6, at fixed seeds. What a
 // radius blurs is allowed for where it is said so.
 #include "core/image/image_io.h"
-#include "support/render.h"
-#include "support/statistics.h"
+#include "support/runs.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -17,45 +16,12 @@
 namespace lampyris::test {
 namespace {
 
-constexpr double kAlpha = 1e-6;
-const std::string kScenes = std::string(LAMPYRIS_SOURCE_DIR) + "/scenes/";
-
-RenderSettings settings_of(const std::string& backend, const std::string& integrator, uint32_t passes, int size) {
-    RenderSettings s;
-    s.backend = backend;
-    s.integrator = integrator;
-    s.samples = passes;
-    if (size) s.resolution = {size, size};
-    return s;
-}
-
-// The mean luminance of renderings with different seeds.
-Mean mean_of_runs(const std::string& file, RenderSettings settings, int runs) {
-    Mean mean;
-    for (int i = 0; i < runs; ++i) {
-        settings.seed = uint32_t(100 + i);
-        mean.add(render_file(kScenes + file, settings).mean_luminance());
-    }
-    return mean;
-}
-
-void expect_mean(const Mean& mean, double expected, double tolerance) {
-    EXPECT_LT(std::abs(mean.value() - expected), normal_threshold(kAlpha) * mean.error() + tolerance)
-        << mean.value() << " +- " << mean.error();
-}
-
 double largest_difference(const Rendered& a, const Rendered& b) {
     double largest = 0.0;
     for (int y = 0; y < a.height; ++y)
         for (int x = 0; x < a.width; ++x)
             largest = std::max(largest, std::abs(a.luminance(x, y) - b.luminance(x, y)) / (a.luminance(x, y) + 0.01));
     return largest;
-}
-
-std::string name_of(std::string text) {
-    for (char& c : text)
-        if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
-    return text;
 }
 
 class PhotonMapping : public testing::TestWithParam<std::string> {};

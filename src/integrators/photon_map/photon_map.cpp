@@ -16,12 +16,6 @@
 namespace lampyris {
 namespace {
 
-constexpr const char* kEye = "integrators/sppm/sppm_eye.kernel.h";
-constexpr const char* kRadius = "integrators/sppm/sppm_radius.kernel.h";
-constexpr const char* kPhotons = "integrators/sppm/sppm_photons.kernel.h";
-constexpr const char* kResolve = "integrators/sppm/sppm_resolve.kernel.h";
-constexpr const char* kConsumer = "integrators/sppm/sppm.consumer.h";
-
 // Photons within a radius of 0, if they lay evenly on the scene's bounding sphere.
 constexpr double kExpectedPhotons = 50.0;
 
@@ -41,10 +35,10 @@ class PhotonMapRendering {
                             "maxdepth",
                             keys));
         const uint32_t effects = session.scene.effects.mask();
-        eye_ = device_.compile(kEye, effects);
-        radius_ = device_.compile(kRadius, 0);
-        photons_ = device_.compile(kPhotons, effects);
-        resolve_ = device_.compile(kResolve, effects);
+        eye_ = device_.compile(sppm_files::kEye, effects);
+        radius_ = device_.compile(sppm_files::kRadius, 0);
+        photons_ = device_.compile(sppm_files::kPhotons, effects);
+        resolve_ = device_.compile(sppm_files::kResolve, effects);
         window_ = device_.create_buffer(sizeof(kernel::FilmWindow), "film window");
         pass_buffer_ = device_.create_buffer(sizeof(kernel::SppmPass), "pass");
         counters_ = device_.create_buffer(sizeof(SppmCounters), "counters");
@@ -59,7 +53,7 @@ class PhotonMapRendering {
         biases_ = device_.create_buffer(pixels_ * sizeof(glm::vec4), "bias of gathered flux");
         film_bias_ = device_.create_buffer(pixels_ * sizeof(kernel::FilmBias), "bias of the film");
         film_bias_->fill_zero();
-        consumer_ = {kConsumer, effects, session.device_scene.get(), {hits_, gathered_, biases_}};
+        consumer_ = {sppm_files::kConsumer, effects, session.device_scene.get(), {hits_, gathered_, biases_}};
         map_->prepare(consumer_);
     }
 
@@ -92,8 +86,8 @@ class PhotonMapRendering {
             pass_.counts = {paths_, session_.sampler, 1, uint32_t(params_.maxdepth) + 1};
             pass_buffer_->upload(&pass_, sizeof pass_);
             counters_->fill_zero();
-            run(kPhotons, *photons_, "photon_tracing", std::array{pass_buffer_, params_buffer_, store_, counters_},
-                paths_);
+            run(sppm_files::kPhotons, *photons_, "photon_tracing",
+                std::array{pass_buffer_, params_buffer_, store_, counters_}, paths_);
             const SppmCounters counters = download_sppm_counters(*counters_);
             stored_ = counters[kernel::SPPM_STORED];
             session_.photons.rays += counters[kernel::SPPM_RAYS];
@@ -128,15 +122,16 @@ class PhotonMapRendering {
         pass_buffer_->upload(&pass_, sizeof pass_);
         const kernel::FilmWindow window{session_.film.window(), {uint32_t(pass), 1, session_.seed, session_.sampler}};
         window_->upload(&window, sizeof window);
-        run(kEye, *eye_, "eye_pass", std::array{window_, params_buffer_, session_.film.buffer(), hits_, queries_},
+        run(sppm_files::kEye, *eye_, "eye_pass",
+            std::array{window_, params_buffer_, session_.film.buffer(), hits_, queries_}, pixels_);
+        run(sppm_files::kRadius, *radius_, "eye_pass",
+            std::array{params_buffer_, pass_buffer_, hits_, queries_, statistics_, gathered_, counters_, biases_},
             pixels_);
-        run(kRadius, *radius_, "eye_pass",
-            std::array{params_buffer_, pass_buffer_, hits_, queries_, statistics_, gathered_, counters_, biases_}, pixels_);
         if (stored_ > 0) {
             if (!built_ || map_->capabilities().needs_queries || !map_->capabilities().exact) build(pass);
             map_->gather(consumer_, queries_, 0, pixels_);
         }
-        run(kResolve, *resolve_, "resolve",
+        run(sppm_files::kResolve, *resolve_, "resolve",
             std::array{window_, params_buffer_, session_.film.buffer(), pass_buffer_, hits_, queries_, gathered_,
                        statistics_, biases_, film_bias_},
             pixels_);
@@ -187,7 +182,8 @@ class PhotonMapRendering {
     SppmParams sppm_{};
     kernel::SppmPass pass_{};
     KernelHandle eye_, radius_, photons_, resolve_;
-    BufferHandle window_, params_buffer_, pass_buffer_, counters_, hits_, queries_, gathered_, statistics_, biases_, film_bias_, store_;
+    BufferHandle window_, params_buffer_, pass_buffer_, counters_, hits_, queries_, gathered_, statistics_, biases_,
+        film_bias_, store_;
     std::unique_ptr<PhotonMap> map_;
     PhotonConsumer consumer_;
 };

@@ -10,6 +10,15 @@
 
 namespace lampyris {
 
+// The kernels, and what becomes of the photons that hit points find.
+namespace sppm_files {
+inline constexpr const char* kEye = "integrators/sppm/sppm_eye.kernel.h";
+inline constexpr const char* kRadius = "integrators/sppm/sppm_radius.kernel.h";
+inline constexpr const char* kPhotons = "integrators/sppm/sppm_photons.kernel.h";
+inline constexpr const char* kResolve = "integrators/sppm/sppm_resolve.kernel.h";
+inline constexpr const char* kConsumer = "integrators/sppm/sppm.consumer.h";
+}  // namespace sppm_files
+
 using SppmCounters = std::array<uint32_t, kernel::SPPM_COUNTERS>;
 
 // Runs a kernel over [0, count), and adds what it took (by timestamps, on Vulkan) to a phase. `file` is the kernel's.

@@ -14,12 +14,6 @@
 namespace lampyris {
 namespace {
 
-constexpr const char* kEye = "integrators/sppm/sppm_eye.kernel.h";
-constexpr const char* kRadius = "integrators/sppm/sppm_radius.kernel.h";
-constexpr const char* kPhotons = "integrators/sppm/sppm_photons.kernel.h";
-constexpr const char* kResolve = "integrators/sppm/sppm_resolve.kernel.h";
-constexpr const char* kConsumer = "integrators/sppm/sppm.consumer.h";
-
 class PhotonMapping {
  public:
     PhotonMapping(RenderSession& session, const SppmParams& params, uint32_t eye_samples)
@@ -40,10 +34,10 @@ class PhotonMapping {
         bounces_ = uint32_t(params.maxdepth) + 1;
         part_ = std::max(1u, std::min(paths_, std::numeric_limits<uint32_t>::max() / bounces_));
         const uint32_t effects = session.scene.effects.mask();
-        eye_ = device_.compile(kEye, effects);
-        radius_ = device_.compile(kRadius, 0);
-        photons_ = device_.compile(kPhotons, effects);
-        resolve_ = device_.compile(kResolve, effects);
+        eye_ = device_.compile(sppm_files::kEye, effects);
+        radius_ = device_.compile(sppm_files::kRadius, 0);
+        photons_ = device_.compile(sppm_files::kPhotons, effects);
+        resolve_ = device_.compile(sppm_files::kResolve, effects);
         window_ = device_.create_buffer(sizeof(kernel::FilmWindow), "film window");
         params_buffer_ = argument_buffer(device_, params_, "parameters");
         pass_buffer_ = device_.create_buffer(sizeof(kernel::SppmPass), "pass");
@@ -62,7 +56,7 @@ class PhotonMapping {
         film_bias_->fill_zero();
         // A structure over the hit points hands over sums, which say nothing of how flux varies within a disk.
         if (!map_->capabilities().sums_only) session.film.attach_bias(film_bias_, double(params.confidence));
-        consumer_ = {kConsumer, effects, session.device_scene.get(), {hits_, gathered_, biases_}};
+        consumer_ = {sppm_files::kConsumer, effects, session.device_scene.get(), {hits_, gathered_, biases_}};
         map_->prepare(consumer_);
     }
 
@@ -89,7 +83,7 @@ class PhotonMapping {
         counters_->upload(&zero, sizeof zero);
         pass_buffer_->upload(&pass_, sizeof pass_);
         if (!fixed_ || !followed_) follow_eye_paths(pass);
-        run(kRadius, *radius_, "eye_pass",
+        run(sppm_files::kRadius, *radius_, "eye_pass",
             std::array{params_buffer_, pass_buffer_, hits_, queries_, statistics_, gathered_, counters_, biases_},
             points_ * pixels_);
         const SppmCounters box = download_counters();
@@ -97,7 +91,7 @@ class PhotonMapping {
         largest_radius_ = std::bit_cast<float>(box[kernel::SPPM_RADIUS]);
         // No eye path ends where photons would be of use: there is nothing to emit them for.
         if (box[kernel::SPPM_RADIUS] > 0) photon_pass();
-        run(kResolve, *resolve_, "resolve",
+        run(sppm_files::kResolve, *resolve_, "resolve",
             std::array{window_, params_buffer_, session_.film.buffer(), pass_buffer_, hits_, queries_, gathered_,
                        statistics_, biases_, film_bias_},
             pixels_);
@@ -107,8 +101,8 @@ class PhotonMapping {
         const kernel::FilmWindow window{session_.film.window(),
                                         {fixed_ ? 0u : uint32_t(pass), points_, session_.seed, session_.sampler}};
         window_->upload(&window, sizeof window);
-        run(kEye, *eye_, "eye_pass", std::array{window_, params_buffer_, session_.film.buffer(), hits_, queries_},
-            pixels_);
+        run(sppm_files::kEye, *eye_, "eye_pass",
+            std::array{window_, params_buffer_, session_.film.buffer(), hits_, queries_}, pixels_);
         followed_ = true;
     }
 
@@ -121,8 +115,8 @@ class PhotonMapping {
             pass_buffer_->upload(&pass_, sizeof pass_);
             const uint32_t none[2] = {0, 0};
             counters_->upload(none, sizeof none);
-            run(kPhotons, *photons_, "photon_tracing", std::array{pass_buffer_, params_buffer_, store_, counters_},
-                count);
+            run(sppm_files::kPhotons, *photons_, "photon_tracing",
+                std::array{pass_buffer_, params_buffer_, store_, counters_}, count);
             const SppmCounters counters = download_counters();
             const uint32_t stored = counters[kernel::SPPM_STORED];
             session_.photons.rays += counters[kernel::SPPM_RAYS];
