@@ -1,6 +1,7 @@
 """./dev itself: what it says, what it refuses, and that a second run has nothing to set up."""
 
 import subprocess
+import sys
 import time
 
 import pytest
@@ -123,3 +124,10 @@ def test_the_shell_scripts_pass_shellcheck(source_dir):
     )
     assert done.stdout == ""
     assert done.returncode == 0
+
+
+@pytest.mark.parametrize("arguments", [["check"], ["format", "--check"]])
+def test_the_python_files_pass_ruff(source_dir, arguments):
+    ruff = [sys.executable, "-m", "ruff", *arguments, "--no-cache", "--quiet", "."]
+    done = subprocess.run(ruff, cwd=source_dir, capture_output=True, text=True, timeout=60, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
