@@ -343,6 +343,27 @@ INSTANTIATE_TEST_SUITE_P(Backends, Degenerate, testing::ValuesIn(usable_backends
     return name;
 });
 
+// 100,000 vertices in a white furnace of radiance 1 add up to 100,001, or the driver ended the loop early (Mesa 22 does after
+// 65,535 iterations) and that is told.
+TEST_P(Degenerate, AVeryLongPathIsWholeOrAnError) {
+    RenderSettings settings;
+    settings.backend = GetParam();
+    settings.samples = 1;
+    settings.integrator = "path:maxdepth=100000,rrdepth=100000";
+    try {
+        const Rendered room = render_text(
+            "Camera \"perspective\"\nFilm \"rgb\" \"integer xresolution\" 1 \"integer yresolution\" 1\nWorldBegin\n"
+            "ReverseOrientation\nAreaLightSource \"diffuse\"\n"
+            "Material \"diffuse\" \"rgb reflectance\" [ 1 1 1 ]\n" +
+                kSphere,
+            settings);
+        EXPECT_NEAR(room.value(0, 0, 1), 100001.0f, 10.0f);  // 10^5 products, each rounded, walk by about 2e-5
+    } catch (const MachineError& error) {
+        EXPECT_NE(std::string(error.what()).find("could not finish a loop"), std::string::npos) << error.what();
+        EXPECT_EQ(GetParam(), "vulkan") << "no driver ends loops here";
+    }
+}
+
 // What would take more memory than there is, is refused before it is asked for.
 TEST(DegenerateMemory, AHugeFilmIsRefused) {
     Case c{"a huge film", kSky};

@@ -32,9 +32,10 @@ FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, IN(Sampler) numbers, 
     int depth = 0;
     uint passed = 0u;
     uint medium = camera_medium();
-    bool alive = true;
-    while (alive) {
-        alive = false;  // every way out of the loop but its end leaves it so
+    uint vertices = uint(params[0].maxdepth) + MAX_PASSED_SURFACES + 1u;  // more than a path has
+    uint vertex = 0u;
+    while (vertex < vertices) {
+        vertex = vertices;  // every way out of the loop but its end leaves it so
         Surface s;
         if (!intersect_scene(origin, direction, s, rays)) {
             if (HAS(EFFECT_ENVIRONMENT)) {
@@ -64,7 +65,7 @@ FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, IN(Sampler) numbers, 
                 REPORT_UNFINISHED();
                 break;
             }
-            alive = true;
+            vertex = uint(depth) + passed;
             continue;
         }
         Frame frame;
@@ -110,9 +111,9 @@ FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, IN(Sampler) numbers, 
             if (sample_1d_at(numbers, dimension + 6u) >= survival) break;
             throughput = throughput / survival;
         }
-        alive = true;
+        vertex = uint(depth) + passed;
     }
-    if (alive) REPORT_UNFINISHED();  // the driver ended the loop
+    if (vertex != vertices) REPORT_UNFINISHED();  // the driver ended the loop
     return radiance;
 }
 

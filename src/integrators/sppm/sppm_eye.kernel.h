@@ -39,10 +39,11 @@ FN void sppm_eye_path(IN(CameraSample) camera, INOUT(FilmPixel) pixel, INOUT(Spp
     int depth = 0;
     uint passed = 0u;
     uint medium = camera_medium();
-    bool alive = true;
+    uint vertices = uint(params[0].maxdepth) + MAX_PASSED_SURFACES + 1u;  // more than a path has
+    uint vertex = 0u;
     place = vec4(0.0f, 0.0f, 0.0f, -1.0f);
-    while (alive) {
-        alive = false;
+    while (vertex < vertices) {
+        vertex = vertices;
         Surface s;
         Hit met;
         if (!intersect_scene_from(origin, direction, s, met, rays)) {
@@ -61,7 +62,7 @@ FN void sppm_eye_path(IN(CameraSample) camera, INOUT(FilmPixel) pixel, INOUT(Spp
                 REPORT_UNFINISHED();
                 break;
             }
-            alive = true;
+            vertex = uint(depth) + passed;
             continue;
         }
         Surface shaded = s;
@@ -126,9 +127,9 @@ FN void sppm_eye_path(IN(CameraSample) camera, INOUT(FilmPixel) pixel, INOUT(Spp
             if (sample_1d_at(camera.numbers, dimension + 6u) >= survival) break;
             throughput = throughput / survival;
         }
-        alive = true;
+        vertex = uint(depth) + passed;
     }
-    if (alive) REPORT_UNFINISHED();  // the driver ended the loop
+    if (vertex != vertices) REPORT_UNFINISHED();  // the driver ended the loop
     hit.radiance.x = radiance.x;
     hit.radiance.y = radiance.y;
     hit.radiance.z = radiance.z;

@@ -44,9 +44,10 @@ KERNEL(sppm_photons) {
     int depth = 0;
     uint passed = 0u;
     uint medium = start.medium;
-    bool alive = true;
-    while (alive) {
-        alive = false;
+    uint vertices = uint(params[0].maxdepth) + MAX_PASSED_SURFACES + 1u;  // more than a path has
+    uint vertex = 0u;
+    while (vertex < vertices) {
+        vertex = vertices;
         Surface s;
         if (!intersect_scene(origin, direction, s, rays)) break;
         if (HAS(EFFECT_MEDIUM)) power *= medium_transmittance(medium, s.distance);
@@ -58,7 +59,7 @@ KERNEL(sppm_photons) {
                 REPORT_UNFINISHED();
                 break;
             }
-            alive = true;
+            vertex = uint(depth) + passed;
             continue;
         }
         vec3 ng = s.ng;
@@ -99,8 +100,8 @@ KERNEL(sppm_photons) {
         direction = onward;
         origin = offset_origin(s.position, s.error, ng, direction);
         medium = medium_behind(s, direction, medium);
-        alive = true;
+        vertex = uint(depth) + passed;
     }
-    if (alive) REPORT_UNFINISHED();  // the driver ended the loop
+    if (vertex != vertices) REPORT_UNFINISHED();  // the driver ended the loop
     ATOMIC_ADD_U32(counters[SPPM_RAYS], rays);
 }
