@@ -28,7 +28,7 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-// Denormals are zero, as on lavapipe and GPUs; restored afterwards, for the thread may be the caller's.
+// Denormals are zero, as on some GPUs; restored afterwards, for the thread may be the caller's.
 class FlushDenormals {
  public:
     FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | 0x8040u); }
