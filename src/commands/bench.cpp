@@ -55,15 +55,19 @@ Json to_json(const PhotonBenchRow& row) {
             {"points", row.points},
             {"distribution", row.distribution},
             {"construction_ns_per_point", row.construction_ns_per_point},
+            {"floor_ns_per_point", row.floor_ns_per_point},
             {"query_ns", row.query_ns},
             {"bytes_per_point", row.bytes_per_point},
             {"photons_found_mean", row.photons_found_mean}};
 }
 
 void print_row(const PhotonBenchRow& row) {
-    fmt::print("{:<8} {:<10} {:>10} {:<24} {:>10.2f} {:>10.0f} {:>10.1f} {:>10.2f}\n", row.backend, row.distribution,
-               row.points, row.structure, row.construction_ns_per_point, row.query_ns, row.bytes_per_point,
-               row.photons_found_mean);
+    const std::string over_floor = row.floor_ns_per_point > 0
+                                       ? fmt::format("{:.2f}", row.construction_ns_per_point / row.floor_ns_per_point)
+                                       : "-";
+    fmt::print("{:<8} {:<10} {:>10} {:<24} {:>10.2f} {:>8} {:>10.0f} {:>10.1f} {:>10.2f}\n", row.backend,
+               row.distribution, row.points, row.structure, row.construction_ns_per_point, over_floor, row.query_ns,
+               row.bytes_per_point, row.photons_found_mean);
 }
 
 int bench(const BenchOptions& options) {
@@ -74,38 +78,62 @@ int bench(const BenchOptions& options) {
     std::vector<uint32_t> counts;
     for (const std::string& text : options.points) counts.push_back(parse_count(text));
     Json json{{"schema", "lampyris.photon-bench/1"}};
-    Json rows = Json::array(), floors = Json::array();
+    Json rows = Json::array(), floor_rows = Json::array(), failed = Json::array();
     for (const std::string& backend : options.backends) {
         const std::unique_ptr<Device> device = create_device(backend, options.device);
+        DeviceOptions alone = options.device;
+        alone.threads = 1;
+        // For structures that one thread builds.
+        const std::unique_ptr<Device> one_thread = backend == "vulkan" ? nullptr : create_device(backend, alone);
         for (const uint32_t count : counts) {
-            const PhotonBenchFloor floor = measure_floor(*device, count, options.settings);
+            const double sort_ns = measure_sort(count, options.settings);
+            // Anew for each row, since machines are not as fast from one second to the next.
+            const auto measure_floors = [&] {
+                PhotonBenchFloors floors;
+                floors.all = measure_floor(*device, count, options.settings);
+                if (one_thread) floors.one_thread = measure_floor(*one_thread, count, options.settings);
+                floors.all.sort_ns = floors.one_thread.sort_ns = sort_ns;
+                return floors;
+            };
+            const PhotonBenchFloor floor = measure_floors().all;
             Json entry{{"scatter_ns", floor.scatter_ns},
                        {"atomic_ns", floor.atomic_ns},
                        {"sort_ns", floor.sort_ns},
                        {"backend", backend},
                        {"points", count}};
             json["floor"] = {{"scatter_ns", floor.scatter_ns}, {"atomic_ns", floor.atomic_ns}};
-            floors.push_back(entry);
+            floor_rows.push_back(entry);
             if (!options.json)
                 fmt::print(
                     "{} floor at {} points: random scatter {:.2f} ns, random atomic add {:.2f} ns a point\n"
-                    "{:<8} {:<10} {:>10} {:<24} {:>10} {:>10} {:>10} {:>10}\n",
+                    "{:<8} {:<10} {:>10} {:<24} {:>10} {:>8} {:>10} {:>10} {:>10}\n",
                     backend, count, floor.scatter_ns, floor.atomic_ns, "backend", "points are", "points", "structure",
-                    "build ns", "query ns", "bytes", "found");
+                    "build ns", "x floor", "query ns", "bytes", "found");
             for (const std::string& distribution : options.distributions) {
                 for (const std::string& structure : structures) {
-                    const PhotonBenchRow row =
-                        measure_photon_map(*device, structure, count, distribution, options.settings);
-                    rows.push_back(to_json(row));
-                    if (!options.json) print_row(row);
+                    try {
+                        const PhotonBenchRow row = measure_photon_map(*device, structure, count, distribution,
+                                                                      measure_floors(), options.settings);
+                        rows.push_back(to_json(row));
+                        if (!options.json) print_row(row);
+                    } catch (const MachineError& error) {
+                        // Some structures need more memory than others, or what a device lacks: the rest goes on.
+                        fmt::print(stderr, "{} {} {} {}: {}\n", backend, distribution, count, structure, error.what());
+                        failed.push_back({{"structure", structure},
+                                          {"backend", backend},
+                                          {"points", count},
+                                          {"distribution", distribution},
+                                          {"error", error.what()}});
+                    }
                 }
             }
         }
     }
     json["rows"] = rows;
-    json["floors"] = floors;
+    json["floors"] = floor_rows;
+    json["failed"] = failed;
     if (options.json) fmt::print("{}\n", json.dump(2));
-    return int(ExitCode::kDone);
+    return int(failed.empty() ? ExitCode::kDone : ExitCode::kMachineCannot);
 }
 
 void add_bench(CLI::App& parent, std::function<int()>& run) {

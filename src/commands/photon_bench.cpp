@@ -85,6 +85,10 @@ class Points {
 
 std::vector<std::string> photon_distributions() { return {"uniform", "clustered", "planar"}; }
 
+double PhotonBenchFloor::of(const ConstructionTraffic& traffic) const {
+    return traffic.accesses * scatter_ns + traffic.atomics * atomic_ns + traffic.sorted_bits / 64.0 * sort_ns;
+}
+
 PhotonBenchFloor measure_floor(Device& device, uint32_t points, const PhotonBenchSettings& settings) {
     PhotonBenchFloor floor;
     const glm::uvec4 arguments(points, 0, 0, 0);
@@ -100,20 +104,24 @@ PhotonBenchFloor measure_floor(Device& device, uint32_t points, const PhotonBenc
     floor.scatter_ns = measure("core/kernel/bench_scatter.kernel.h", 16);
     floor.atomic_ns = measure("core/kernel/bench_atomic.kernel.h", 4);
 
-    std::mt19937_64 random(1);
-    std::vector<std::pair<uint64_t, uint32_t>> unsorted(points), items(points), other(points);
-    for (uint32_t i = 0; i < points; ++i) unsorted[i] = {random(), i};
-    floor.sort_ns = median_seconds(settings,
-                                   [&] {
-                                       items = unsorted;
-                                       radix_sort(items, other);
-                                   }) *
-                    1e9 / points;
     return floor;
 }
 
+double measure_sort(uint32_t points, const PhotonBenchSettings& settings) {
+    std::mt19937_64 random(1);
+    std::vector<std::pair<uint64_t, uint32_t>> unsorted(points), items(points), other(points);
+    for (uint32_t i = 0; i < points; ++i) unsorted[i] = {random(), i};
+    return median_seconds(settings,
+                          [&] {
+                              items = unsorted;
+                              radix_sort(items, other);
+                          }) *
+           1e9 / points;
+}
+
 PhotonBenchRow measure_photon_map(Device& device, const std::string& structure, uint32_t points,
-                                  const std::string& distribution, const PhotonBenchSettings& settings) {
+                                  const std::string& distribution, const PhotonBenchFloors& floors,
+                                  const PhotonBenchSettings& settings) {
     PhotonBenchRow row;
     row.structure = structure;
     row.backend = device.backend();
@@ -154,6 +162,9 @@ PhotonBenchRow measure_photon_map(Device& device, const std::string& structure, 
                                                        map->build(set);
                                                    }) *
                                     1e9 / points;
+    const double built_points = map->capabilities().needs_queries ? settings.queries : points;
+    const ConstructionTraffic traffic = map->traffic();
+    row.floor_ns_per_point = (traffic.one_thread ? floors.one_thread : floors.all).of(traffic) * built_points / points;
     row.query_ns = median_seconds(settings, [&] { map->gather(consumer, set.queries, 0, settings.queries); }) * 1e9 /
                    settings.queries;
     row.bytes_per_point = double(map->memory_bytes()) / points;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/device.h"
+#include "core/photon_map.h"
 
 #include <cstdint>
 #include <string>
@@ -20,18 +21,27 @@ struct PhotonBenchSettings {
 // random place among as many as there are points; and of a radix sort of 64-bit keys on one thread.
 struct PhotonBenchFloor {
     double scatter_ns = 0, atomic_ns = 0, sort_ns = 0;
+    // Of what a structure cannot avoid.
+    double of(const ConstructionTraffic& traffic) const;
 };
+struct PhotonBenchFloors {
+    PhotonBenchFloor all, one_thread;  // with all of a device's threads; with one, where it has threads
+};
+// All but the sort, which is no device's.
 PhotonBenchFloor measure_floor(Device& device, uint32_t points, const PhotonBenchSettings& settings);
+double measure_sort(uint32_t points, const PhotonBenchSettings& settings);
 
 struct PhotonBenchRow {
     std::string structure;  // as asked for
     std::vector<std::pair<std::string, std::string>> parameters;
     std::string backend, distribution;
     uint32_t points = 0;
-    double construction_ns_per_point = 0, query_ns = 0, bytes_per_point = 0, photons_found_mean = 0;
+    double construction_ns_per_point = 0, floor_ns_per_point = 0, query_ns = 0, bytes_per_point = 0,
+           photons_found_mean = 0;
 };
 PhotonBenchRow measure_photon_map(Device& device, const std::string& structure, uint32_t points,
-                                  const std::string& distribution, const PhotonBenchSettings& settings);
+                                  const std::string& distribution, const PhotonBenchFloors& floors,
+                                  const PhotonBenchSettings& settings);
 
 std::vector<std::string> photon_distributions();  // uniform, clustered, planar
 

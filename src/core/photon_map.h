@@ -61,6 +61,15 @@ struct PhotonMapStatistics {
     uint64_t lost_photons = 0;  // by lossy maps, so far
 };
 
+// Memory traffic per point (photon, or query for maps over hit points) that building cannot avoid, in units that
+// `lampyris bench photon-maps` measures beside it.
+struct ConstructionTraffic {
+    double accesses = 0;     // of a cache line at a random place, reading or writing
+    double atomics = 0;      // at a random place
+    double sorted_bits = 0;  // of keys that are sorted by radix
+    bool one_thread = false;
+};
+
 struct BucketLoad {
     double mean = 0;  // photons in a bucket that has any
     uint32_t max = 0;
@@ -84,6 +93,8 @@ class PhotonMap {
     void gather(const PhotonConsumer& consumer, const BufferHandle& queries, uint32_t first, uint32_t count);
 
     PhotonMapStatistics statistics() const { return statistics_; }
+    // What building cannot do without; all 0 where that is nothing but reading the photons.
+    virtual ConstructionTraffic traffic() const { return {}; }
     // Of the last build; reads it back from the device, so not for every pass. Empty where there are no buckets.
     virtual std::optional<BucketLoad> bucket_load() const { return std::nullopt; }
     size_t memory_bytes() const;  // of buffers now, without the photons

@@ -43,10 +43,12 @@ def test_json_has_the_keys_of_the_contract(run):
             "points",
             "distribution",
             "construction_ns_per_point",
+            "floor_ns_per_point",
             "query_ns",
             "bytes_per_point",
             "photons_found_mean",
         }
+        assert row["floor_ns_per_point"] > 0
         assert row["construction_ns_per_point"] > 0 and row["query_ns"] > 0
     assert data["rows"][1]["parameters"]["slots"] == "2"
     assert data["rows"][0]["points"] == 1000 and data["rows"][3]["points"] == 2000

@@ -19,6 +19,7 @@ class Bvh : public PhotonMap {
  public:
     BvhParams params;
     PhotonMapCapabilities capabilities() const override { return {.exact = true, .fixed_order = true}; }
+    ConstructionTraffic traffic() const override { return {.accesses = 1, .sorted_bits = 32}; }  // the photon
 
  protected:
     static constexpr const char* kCode = "accel/bvh/bvh_code.kernel.h";

@@ -15,6 +15,8 @@ class Cuckoo : public PhotonMap {
  public:
     CuckooParams params;
     PhotonMapCapabilities capabilities() const override { return {.exact = true, .fixed_order = true}; }
+    // The photon, and the entry of a cell that may hold no other.
+    ConstructionTraffic traffic() const override { return {.accesses = 1, .atomics = 1, .sorted_bits = 32}; }
 
  protected:
     static constexpr const char* kCode = "accel/cuckoo/cuckoo_code.kernel.h";

@@ -8,6 +8,10 @@ class HashList : public PhotonMap {
  public:
     LinkedListParams params;
     PhotonMapCapabilities capabilities() const override { return {.exact = true, .fixed_order = params.order == 0}; }
+    // Link; for the order, the node and its key.
+    ConstructionTraffic traffic() const override {
+        return {.accesses = params.order == 0 ? 2.0 : 0.0, .atomics = 1, .one_thread = true};
+    }
 
  protected:
     static constexpr const char* kInsert = "accel/hash_list/hash_list_insert.kernel.h";

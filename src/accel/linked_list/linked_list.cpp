@@ -8,6 +8,8 @@ class LinkedList : public PhotonMap {
  public:
     LinkedListParams params;
     PhotonMapCapabilities capabilities() const override { return {.exact = true, .fixed_order = params.order == 0}; }
+    // Link; for the order, the node and its key.
+    ConstructionTraffic traffic() const override { return {.accesses = params.order == 0 ? 2.0 : 0.0, .atomics = 1}; }
 
  protected:
     static constexpr const char* kLink = "accel/linked_list/linked_list_link.kernel.h";

@@ -10,6 +10,8 @@ class SortedGrid : public PhotonMap {
  public:
     SortedGridParams params;
     PhotonMapCapabilities capabilities() const override { return {.exact = true, .fixed_order = true}; }
+    // Count; start, pair and photon.
+    ConstructionTraffic traffic() const override { return {.accesses = 3, .atomics = 1}; }
 
  protected:
     static constexpr const char* kCount = "accel/sorted_grid/sorted_grid_count.kernel.h";

@@ -20,6 +20,8 @@ class Splat : public PhotonMap {
     PhotonMapCapabilities capabilities() const override {
         return {.exact = true, .fixed_order = true, .needs_queries = true, .sums_only = true, .int64_atomics = true};
     }
+    // Count; start, place and number of a hit point.
+    ConstructionTraffic traffic() const override { return {.accesses = 3, .atomics = 1}; }
 
  protected:
     static constexpr const char* kCount = "accel/splat/splat_count.kernel.h";

@@ -24,6 +24,8 @@ class StochasticHash : public PhotonMap {
         return {
             .stochastic = true, .fixed_order = params.selection != kRace, .int64_atomics = params.selection != kRace};
     }
+    // Count and winner lie on one cache line.
+    ConstructionTraffic traffic() const override { return {.accesses = 1, .atomics = 1}; }
     std::optional<BucketLoad> bucket_load() const override {
         if (params.selection == kFlux || buckets_ == 0) return std::nullopt;  // its counters hold weights
         std::vector<uint64_t> table(size_t(buckets_) * (params.slots + 1));

@@ -12,6 +12,8 @@ class UniformGrid : public PhotonMap {
     PhotonMapCapabilities capabilities() const override {
         return {.exact = !drops(), .lossy = drops(), .fixed_order = !drops()};
     }
+    // Count; slot, and for the order the key.
+    ConstructionTraffic traffic() const override { return {.accesses = 2, .atomics = 1}; }
 
  protected:
     static constexpr const char* kStore = "accel/uniform_grid/uniform_grid_store.kernel.h";
