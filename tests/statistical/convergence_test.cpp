@@ -1,8 +1,10 @@
 // Bias and variance of memoryless progressive photon mapping fall as theory says where radiance is smooth: variance as
 // n^-alpha, squared bias as n^-(2 - 2 alpha) (Knaus and Zwicker 2011; Kaplanyan and Dachsbacher 2013).
 //
-// After n passes the mean of the radii is not yet what it tends to: the slope between 8 and 256 passes is that of the finite sums,
-// which the test computes, e.g. -0.60 where the limit is -2/3. Slopes are within 5 standard errors (6e-7 each, as normal variables).
+// After n passes the mean of the radii is not yet what it tends to: the slopes of finite sums, which the test computes, are e.g. -0.62
+// between 32 and 1024 passes where the limit is -2/3. Slopes are within 5 standard errors of those (6e-7 each, as normal variables).
+// Bias and variance are measured apart: photons of a Sobol sequence have the same bias and a hundredth of the noise, independent ones
+// the variance that theory speaks of.
 #include "support/convergence.h"
 
 #include <gtest/gtest.h>
@@ -13,22 +15,27 @@
 namespace lampyris::test {
 namespace {
 
-TEST(Convergence, BiasAndVarianceFallAsTheoryHasIt) {
+TEST(Convergence, VarianceFallsAsTheoryHasIt) {
     const double alpha = 2.0 / 3.0;
-    const ConvergenceSlopes s = measure_convergence(alpha, 128, 256, 8);
+    const ConvergenceSlopes s = measure_convergence({.alpha = alpha, .seeds = 320, .photons = 300});
     for (const ConvergencePointOfSeeds& p : s.points)
-        RecordProperty("after_" + std::to_string(p.passes),
-                       std::to_string(p.bias) + " bias, " + std::to_string(p.variance) + " variance");
+        RecordProperty("after_" + std::to_string(p.passes), std::to_string(p.variance) + " variance");
     EXPECT_NEAR(s.variance, s.expected_variance, 5 * s.variance_error)
         << "+- " << s.variance_error << ", in the limit " << -alpha;
+    EXPECT_LT(s.variance_error, 0.025);  // the test can tell: alpha = 0.8 has -0.8
+    EXPECT_NEAR(s.expected_variance, -alpha, 0.03);
+}
+
+TEST(Convergence, BiasFallsAsTheoryHasIt) {
+    const double alpha = 2.0 / 3.0;
+    const ConvergenceSlopes s =
+        measure_convergence({.alpha = alpha, .seeds = 12, .passes = 1024, .first = 32, .sampler = "sobol"});
+    for (const ConvergencePointOfSeeds& p : s.points)
+        RecordProperty("after_" + std::to_string(p.passes), std::to_string(p.bias) + " bias");
     EXPECT_NEAR(s.bias_squared, s.expected_bias_squared, 5 * s.bias_squared_error)
         << "+- " << s.bias_squared_error << ", in the limit " << -(2 - 2 * alpha);
-    // The test can tell: alpha = 0.8 has -0.8 and -0.4.
-    EXPECT_LT(s.variance_error, 0.03);
-    EXPECT_LT(s.bias_squared_error, 0.05);
-    // And the finite sums are near the limit.
-    EXPECT_NEAR(s.expected_variance, -alpha, 0.03);
-    EXPECT_NEAR(s.expected_bias_squared, -(2 - 2 * alpha), 0.1);
+    EXPECT_LT(s.bias_squared_error, 0.01);  // alpha = 0.8 has -0.4
+    EXPECT_NEAR(s.expected_bias_squared, -(2 - 2 * alpha), 0.05);
 }
 
 // |estimate - truth| <= |bias| + z sqrt(variance of both) for each pixel of the window, over many runs. Neighbouring pixels share photons,

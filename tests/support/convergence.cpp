@@ -14,18 +14,19 @@ constexpr int kSize = 8;             // pixels a side
 constexpr double kHalfWidth = 0.12;  // of the window
 constexpr double kRadius = 0.25;     // of the first pass
 constexpr double kAlbedo = 0.5;
+constexpr double kConeAngle = 40.0;  // degrees
 
 // A spot light of intensity 1, at height 1 over the plane z = 0, whose cone is far wider than what the window's disks see.
-std::string scene_text() {
+std::string scene_text(const std::string& sampler = "independent") {
     return fmt::format(
         "LookAt 0 0 3  0 0 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [ {0} {1} {0} {1} ]\n"
-        "Sampler \"independent\" \"integer pixelsamples\" 1\nPixelFilter \"box\" \"float xradius\" 0.5 \"float "
+        "Sampler \"{4}\" \"integer pixelsamples\" 1\nPixelFilter \"box\" \"float xradius\" 0.5 \"float "
         "yradius\" 0.5\n"
         "Film \"rgb\" \"integer xresolution\" {2} \"integer yresolution\" {2}\nWorldBegin\n"
-        "LightSource \"spot\" \"point3 from\" [ 0 0 1 ] \"point3 to\" [ 0 0 0 ] \"float coneangle\" 40 "
+        "LightSource \"spot\" \"point3 from\" [ 0 0 1 ] \"point3 to\" [ 0 0 0 ] \"float coneangle\" {5} "
         "\"float conedeltaangle\" 0.01\nMaterial \"diffuse\" \"rgb reflectance\" [ {3} {3} {3} ]\n"
         "Shape \"trianglemesh\" \"point3 P\" [ -3 -3 0  3 -3 0  3 3 0  -3 3 0 ] \"integer indices\" [ 0 1 2 0 2 3 ]\n",
-        -kHalfWidth, kHalfWidth, kSize, kAlbedo);
+        -kHalfWidth, kHalfWidth, kSize, kAlbedo, sampler, kConeAngle);
 }
 
 // Radiance at distance rho from the foot of the light: albedo / pi times irradiance 1 / (1 + rho^2)^(3/2).
@@ -41,6 +42,11 @@ double pixel_truth(int x, int y) {
             sum += radiance(px * px + py * py);
         }
     return sum / (kGrid * kGrid);
+}
+
+// The share of the photons that fall into a disk about the foot: directions are uniform within the cone.
+double disk_share(double r2) {
+    return (1.0 - 1.0 / std::sqrt(1.0 + r2)) / (1.0 - std::cos(kConeAngle * std::numbers::pi / 180.0));
 }
 
 // Relative bias of a disk of squared radius r2 about the foot: the mean of (1 + rho^2)^(-3/2) over it, less 1; to first order
@@ -96,9 +102,9 @@ Slopes fit(const std::vector<ConvergencePointOfSeeds>& points, uint64_t first) {
     return {slope(x, b), slope(x, v)};
 }
 
-std::string integrator_of(double alpha) {
-    return fmt::format("sppm:schedule=memoryless,direct=photons,maxdepth=1,radius={},alpha={},photonsperiteration=3000",
-                       kRadius, alpha);
+std::string integrator_of(double alpha, uint32_t photons = 3000) {
+    return fmt::format("sppm:schedule=memoryless,direct=photons,maxdepth=1,radius={},alpha={},photonsperiteration={}",
+                       kRadius, alpha, photons);
 }
 
 }  // namespace
@@ -141,16 +147,17 @@ BiasEstimate measure_bias(int seeds, uint32_t passes) {
     return result;
 }
 
-ConvergenceSlopes measure_convergence(double alpha, int seeds, uint32_t passes, uint64_t first) {
+ConvergenceSlopes measure_convergence(const ConvergenceSettings& asked) {
     RenderSettings settings;
-    settings.samples = passes;
-    settings.integrator = integrator_of(alpha);
+    settings.samples = asked.passes;
+    settings.integrator = integrator_of(asked.alpha, asked.photons);
+    const std::string text = scene_text(asked.sampler);
     std::vector<Run> runs;
     std::vector<uint64_t> snapshots;
-    for (int seed = 0; seed < seeds; ++seed) {
+    for (int seed = 0; seed < asked.seeds; ++seed) {
         Run run;
         std::vector<uint64_t> at;
-        settings.seed = uint32_t(1000 + seed);
+        settings.seed = asked.first_seed + uint32_t(seed);
         settings.on_progress = [&](const RenderProgress& progress, const Film& film) {
             if ((progress.passes & (progress.passes - 1)) != 0) return;
             const std::vector<float> rgb = film.rgb();
@@ -161,37 +168,38 @@ ConvergenceSlopes measure_convergence(double alpha, int seeds, uint32_t passes, 
             run.errors.push_back(std::move(errors));
             at.push_back(progress.passes);
         };
-        render_text(scene_text(), settings);
+        render_text(text, settings);
         runs.push_back(std::move(run));
         snapshots = at;
     }
     ConvergenceSlopes result;
     result.points = points_of(runs, snapshots, -1);
-    const Slopes all = fit(result.points, first);
+    const Slopes all = fit(result.points, asked.first);
     result.bias_squared = all.bias_squared, result.variance = all.variance;
     double b = 0.0, bb = 0.0, v = 0.0, vv = 0.0;
-    for (int r = 0; r < seeds; ++r) {
-        const Slopes s = fit(points_of(runs, snapshots, r), first);
+    for (int r = 0; r < asked.seeds; ++r) {
+        const Slopes s = fit(points_of(runs, snapshots, r), asked.first);
         b += s.bias_squared, bb += s.bias_squared * s.bias_squared, v += s.variance, vv += s.variance * s.variance;
     }
     const auto jackknife = [&](double sum, double squares) {
-        return std::sqrt(std::max(0.0, (squares - sum * sum / seeds)) * (seeds - 1) / seeds);
+        return std::sqrt(std::max(0.0, (squares - sum * sum / asked.seeds)) * (asked.seeds - 1) / asked.seeds);
     };
     result.bias_squared_error = jackknife(b, bb), result.variance_error = jackknife(v, vv);
-    // What the radii of these passes say: the mean of their biases, and of their variances (1 / r^2 each) over n.
+    // What the radii of these passes say: the mean of their biases, and of their variances over n. The number of photons in a disk is
+    // binomial, so that of its relative variance is (1 - share) / share.
     std::vector<ConvergencePointOfSeeds> expected;
-    double bias = 0.0, inverse = 0.0;
+    double bias = 0.0, variance = 0.0;
     size_t k = 0;
-    for (uint64_t i = 0; i < passes && k < snapshots.size(); ++i) {
-        const double r2 = kRadius * kRadius * memoryless_scale(i, alpha);
-        bias += disk_bias(r2), inverse += 1.0 / r2;
+    for (uint64_t i = 0; i < asked.passes && k < snapshots.size(); ++i) {
+        const double r2 = kRadius * kRadius * memoryless_scale(i, asked.alpha);
+        bias += disk_bias(r2), variance += 1.0 / disk_share(r2) - 1.0;
         if (i + 1 == snapshots[k]) {
             const double n = double(i + 1);
-            expected.push_back({i + 1, bias / n, inverse / (n * n)});
+            expected.push_back({i + 1, bias / n, variance / (n * n * asked.photons)});
             ++k;
         }
     }
-    const Slopes said = fit(expected, first);
+    const Slopes said = fit(expected, asked.first);
     result.expected_bias_squared = said.bias_squared, result.expected_variance = said.variance;
     return result;
 }

@@ -5,6 +5,7 @@
 #include "support/statistics.h"
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace lampyris::test {
@@ -23,8 +24,17 @@ struct ConvergenceSlopes {
     std::vector<ConvergencePointOfSeeds> points;
 };
 
-// Memoryless radii of parameter alpha; fits the passes from `first` on.
-ConvergenceSlopes measure_convergence(double alpha, int seeds, uint32_t passes, uint64_t first);
+struct ConvergenceSettings {
+    double alpha = 2.0 / 3.0;  // of memoryless radii
+    int seeds = 128;
+    uint32_t first_seed = 1000;
+    uint32_t passes = 256;
+    uint64_t first = 8;       // the passes that are fitted: from this one on
+    uint32_t photons = 3000;  // emitted a pass
+    // `sobol` has the same bias with less variance, whose slope is then not that of theory.
+    std::string sampler = "independent";
+};
+ConvergenceSlopes measure_convergence(const ConvergenceSettings& settings);
 
 // The share of the window's pixels whose error stays below the image's channel `error`, run by run.
 Mean measure_coverage(double confidence, int seeds, uint32_t passes);
