@@ -1,0 +1,49 @@
+"""Photon mapping takes the same memory however many passes there are."""
+
+import json
+import subprocess
+
+import pytest
+
+
+def statistics(program, folder, photons, passes):
+    """Statistics of a small picture with so many photons a pass."""
+    scene = folder / "scene.pbrt"
+    scene.write_text(
+        """
+        LookAt 0 -3 1  0 0 0.5  0 0 1
+        Film "rgb" "integer xresolution" 64 "integer yresolution" 64
+        WorldBegin
+        LightSource "point" "point3 from" [ 0 0 2 ] "rgb I" [ 1 1 1 ]
+        Shape "trianglemesh" "point3 P" [ -2 -2 0  2 -2 0  2 2 0  -2 2 0 ] "integer indices" [ 0 1 2 0 2 3 ]
+        Shape "trianglemesh" "point3 P" [ -2 2 0  2 2 0  2 2 2  -2 2 2 ] "integer indices" [ 0 1 2 0 2 3 ]
+        """
+    )
+    stats = folder / "stats.json"
+    command = [program, "render", scene, "-o", folder / "image.pfm", "--stats", stats, "--passes", str(passes), "-q"]
+    integrator = f"sppm:photonsperiteration={photons},direct=photons,radius=0.02"
+    done = subprocess.run([*command, "--integrator", integrator], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return json.loads(stats.read_text())
+
+
+def grown(program, folder, photons, passes):
+    """Memory after all passes over that after three, and the photons that were emitted."""
+    few = statistics(program, folder, photons, 3)
+    many = statistics(program, folder, photons, passes)
+    assert many["photons_emitted"] == photons * passes
+    return many["peak_memory_bytes"] / few["peak_memory_bytes"], many
+
+
+def test_memory_does_not_grow_with_passes(program, tmp_path):
+    ratio, many = grown(program, tmp_path, 100_000, 60)
+    # What a pass keeps: 32 bytes a photon stored and what its map adds, and a few hundred a pixel.
+    assert ratio < 1.03, many["peak_memory_bytes"]
+
+
+@pytest.mark.long
+def test_a_hundred_million_photons(program, tmp_path):
+    ratio, many = grown(program, tmp_path, 1_000_000, 100)
+    assert many["photons_emitted"] == 100_000_000
+    assert ratio < 1.03, many["peak_memory_bytes"]
+    print(f"{many['photons_stored']} photons stored, {many['peak_memory_bytes'] / 1e6:.0f} MB")
