@@ -1,0 +1,11 @@
+// How each large node is split.
+#include "accel/kd_tree/kd_tree.layout.h"
+
+BUFFER_RO(0, KdArgs, arguments)
+BUFFER_RW(1, KdLarge, larges)
+
+KERNEL(kd_tree_shape) {
+    KdLarge large = larges[index];
+    kd_shape(large, arguments[0].sizes.z);
+    larges[index] = large;
+}
