@@ -176,10 +176,10 @@ std::vector<std::string> exact_photon_maps() {
     std::vector<std::string> names;
     for (const std::string& name : photon_maps().names())
         if (name != "brute_force" && create_photon_map(name)->capabilities().exact) names.push_back(name);
-    // Cells much smaller and larger than a query, and a table that is full.
+    // Cells much smaller and larger than a query, a table that is full, and a tree of as many rounds as can be.
     for (const char* other :
          {"sorted_grid:cell_size=0.5,table_size=0.02", "sorted_grid:cell_size=7", "linked_list:table_size=0.02",
-          "cuckoo:stash=0,table_size=1.05", "uniform_grid:capacity=1,cells=0.1"})
+          "cuckoo:stash=0,table_size=1.05", "uniform_grid:capacity=1,cells=0.1", "kd_tree:leaf=4"})
         names.emplace_back(other);
     return names;
 }
