@@ -29,6 +29,8 @@ class KdTree : public PhotonMap {
     PhotonMapCapabilities capabilities() const override {
         return {.exact = true, .fixed_order = true, .k_nearest = true};
     }
+    // Count, place and photon, for each round that a photon of the last build went through.
+    ConstructionTraffic traffic() const override { return {.accesses = 2 * rounds_, .atomics = rounds_}; }
 
  protected:
     static constexpr const char* kList = "accel/kd_tree/kd_tree_list.kernel.h";
@@ -138,6 +140,9 @@ class KdTree : public PhotonMap {
             for (Round next = open_root(); next.larges > 0; next = split(rounds)) rounds.push_back(next);
         else
             rounds.emplace_back();
+        rounds_ = 0;
+        for (const Round& round : rounds)
+            rounds_ += std::min(1.0, double(round.chunks) * KdCode::KD_CHUNK / std::max(1.0, double(count)));
         keep("nodes", (size_t(rounds.back().first_node) + rounds.back().cells) * sizeof(KdCode::KdNode));
         if (count > 0)
             for (size_t round = rounds.size(); round-- > 0;) join(rounds, round);
@@ -146,6 +151,9 @@ class KdTree : public PhotonMap {
     std::vector<BufferHandle> gather_buffers() const override {
         return {kept("arguments"), kept("nodes"), kept("places"), kept("fluxes")};
     }
+
+ private:
+    double rounds_ = 0;  // of the last build, of the mean photon
 };
 
 REGISTER_PHOTON_MAP(KdTree, KD_TREE_PARAMS, "kd_tree",
