@@ -21,6 +21,10 @@ std::map<std::string, Backend>& backends() {
 
 }  // namespace
 
+size_t Device::build_boxes(const BufferHandle&, uint32_t) {
+    throw MachineError(fmt::format("error: {} builds no acceleration structures over boxes", description()));
+}
+
 BackendRegistration::BackendRegistration(const char* name, const char* summary,
                                          std::function<std::unique_ptr<Device>(const DeviceOptions&)> create,
                                          std::function<std::vector<DeviceInfo>()> list) {

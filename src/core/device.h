@@ -46,13 +46,17 @@ struct DeviceStatistics {
     double build_s = 0;    // acceleration structures
     double compile_s = 0;  // shaders
     size_t memory_bytes = 0, peak_memory_bytes = 0;
-    std::map<std::string, double> kernel_s;  // seconds in each kernel, by its file's name
+    std::map<std::string, double> kernel_s;  // seconds in each kernel, by its file's name, and in build_boxes
     std::map<std::string, size_t>
         spirv_bytes;  // size of each kernel's SPIR-V, by its file's name; empty on CPU backends
 };
 
 // What not every device can do.
-enum class DeviceFeature { kInt64Atomics, kRayQuery };
+enum class DeviceFeature {
+    kInt64Atomics,
+    kRayQuery,  // rays of a scene are traced by hardware, or by what the driver has in its place
+    kBoxes,     // build_boxes
+};
 
 class Device {
  public:
@@ -78,6 +82,12 @@ class Device {
     // fails, or when a kernel reports an unfinished loop.
     virtual void run(const Kernel& kernel, const DeviceScene* scene, std::span<const BufferHandle> buffers,
                      uint32_t begin, uint32_t count) = 0;
+
+    // Builds an acceleration structure over the first `count` boxes of a buffer, six floats each (low x, y, z, high x, y, z). It stays
+    // with the buffer until it is built anew; a kernel in which the buffer's binding is an accelerationStructureEXT asks it,
+    // by ray query, which boxes a ray meets. Returns the bytes that it takes. Throws MachineError where the device does not
+    // offer DeviceFeature::kBoxes.
+    virtual size_t build_boxes(const BufferHandle& boxes, uint32_t count);
 
     virtual DeviceStatistics statistics() const = 0;
 };

@@ -123,6 +123,11 @@ Capabilities capabilities_of(const vk::raii::PhysicalDevice& device, uint32_t qu
     can.is_cpu = base.deviceType == vk::PhysicalDeviceType::eCpu;
     can.is_integrated = base.deviceType == vk::PhysicalDeviceType::eIntegratedGpu;
     can.ray_query = offers_ray_query(device);
+    if (can.ray_query)
+        can.max_boxes =
+            device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceAccelerationStructurePropertiesKHR>()
+                .get<vk::PhysicalDeviceAccelerationStructurePropertiesKHR>()
+                .maxPrimitiveCount;
     can.int64_atomics = offers_int64_atomics(device);
     can.timestamps =
         device.getQueueFamilyProperties()[queue_family].timestampValidBits > 0 && base.limits.timestampPeriod > 0;

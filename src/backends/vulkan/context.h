@@ -19,6 +19,7 @@ Switch read_switch(const DeviceOptions& options, const std::string& key, Switch 
 struct Capabilities {
     bool is_cpu = false, is_integrated = false;
     bool ray_query = false;
+    uint64_t max_boxes = 0;  // of an acceleration structure
     bool int64_atomics = false;
     bool timestamps = false;
     double timestamp_ns = 1;  // per tick

@@ -1,4 +1,5 @@
 // The Vulkan backend: kernels through glslang, on any device with Vulkan 1.2.
+#include "backends/vulkan/boxes.h"
 #include "backends/vulkan/kernel.h"
 #include "backends/vulkan/scene.h"
 #include "core/error.h"
@@ -59,7 +60,12 @@ class VulkanDevice final : public Device {
     }
     unsigned threads() const override { return 0; }
     bool offers(DeviceFeature feature) const override {
-        return feature == DeviceFeature::kInt64Atomics ? context_->can.int64_atomics : shader_options_.ray_query;
+        switch (feature) {
+            case DeviceFeature::kInt64Atomics: return context_->can.int64_atomics;
+            case DeviceFeature::kRayQuery: return shader_options_.ray_query;
+            case DeviceFeature::kBoxes: return context_->can.ray_query;
+        }
+        return false;
     }
 
     BufferHandle create_buffer(size_t bytes, std::string_view name) override {
@@ -68,7 +74,9 @@ class VulkanDevice final : public Device {
                 fmt::format("error: Vulkan: {} binds at most {:.0f} MB to a buffer, and {} needs {:.0f} MB",
                             context_->name, double(context_->can.max_storage_range) / 1e6, name, double(bytes) / 1e6));
         }
-        auto buffer = std::make_shared<VulkanBuffer>(context_, account_, bytes, name, BufferOptions{.staged = staged_});
+        BufferOptions options{.staged = staged_};
+        if (context_->can.ray_query) options.usage |= kBuildInputUsage;  // it may come to hold boxes
+        auto buffer = std::make_shared<VulkanBuffer>(context_, account_, bytes, name, options);
         guarded("clearing a buffer", [&] { buffer->fill_zero(); });
         return buffer;
     }
@@ -107,14 +115,36 @@ class VulkanDevice final : public Device {
         const auto& vulkan_kernel = dynamic_cast<const VulkanKernel&>(kernel);
         if (!scene && vulkan_kernel.uses_scene())
             throw std::logic_error(fmt::format("kernel {} needs a scene", vulkan_kernel.file()));
-        std::vector<vk::Buffer> handles;
-        for (const BufferHandle& buffer : buffers)
-            handles.push_back(buffer ? dynamic_cast<const VulkanBuffer&>(*buffer).handle() : vk::Buffer());
+        std::vector<KernelBinding> handles(buffers.size());
+        for (size_t i = 0; i < buffers.size(); ++i) {
+            if (!buffers[i]) continue;
+            const auto& buffer = dynamic_cast<const VulkanBuffer&>(*buffers[i]);
+            handles[i].buffer = buffer.handle();
+            if (buffer.boxes) handles[i].structure = buffer.boxes->top_level();
+        }
         guarded(fmt::format("running kernel {}", vulkan_kernel.file()), [&] {
             const SceneBindings& bindings = scene ? dynamic_cast<const VulkanScene&>(*scene).bindings() : no_scene_;
             statistics_.kernel_s[vulkan_kernel.file()] += vulkan_kernel.run(bindings, handles, begin, count);
             check_unfinished(vulkan_kernel.file());
         });
+    }
+
+    size_t build_boxes(const BufferHandle& boxes, uint32_t count) override {
+        if (!context_->can.ray_query) return Device::build_boxes(boxes, count);
+        if (count > context_->can.max_boxes)
+            throw MachineError(
+                fmt::format("error: Vulkan: {} builds acceleration structures of at most {} boxes, not {}",
+                            context_->name, context_->can.max_boxes, count));
+        const auto start = Clock::now();
+        auto& buffer = dynamic_cast<VulkanBuffer&>(*boxes);
+        buffer.check_range(size_t(count) * sizeof(vk::AabbPositionsKHR), 0);
+        size_t bytes = 0;
+        guarded("building an acceleration structure over boxes", [&] {
+            if (!buffer.boxes) buffer.boxes = std::make_shared<BoxStructure>(context_, account_, staged_);
+            bytes = buffer.boxes->build(buffer.address(), count);
+        });
+        statistics_.kernel_s["(structure over boxes)"] += seconds_since(start);
+        return bytes;
     }
 
     DeviceStatistics statistics() const override {

@@ -77,25 +77,29 @@ bool VulkanKernel::uses_scene() const {
                        [](const auto& b) { return b.set == 0 && b.binding != kUnfinishedBinding; });
 }
 
-void VulkanKernel::bind(const SceneBindings& scene, std::span<const vk::Buffer> buffers) const {
+void VulkanKernel::bind(const SceneBindings& scene, std::span<const KernelBinding> buffers) const {
     std::vector<vk::WriteDescriptorSet> writes;
     std::vector<vk::DescriptorBufferInfo> infos;
-    infos.reserve(bindings_.size());
-    vk::WriteDescriptorSetAccelerationStructureKHR structure(1, &scene.top_level);
+    std::vector<vk::AccelerationStructureKHR> handles;
+    std::vector<vk::WriteDescriptorSetAccelerationStructureKHR> structures;
+    infos.reserve(bindings_.size());  // what the writes point to must stay where it is
+    handles.reserve(bindings_.size());
+    structures.reserve(bindings_.size());
     for (const ShaderBinding& binding : bindings_) {
+        KernelBinding given;
+        if (binding.set == 1 && binding.binding < buffers.size()) given = buffers[binding.binding];
+        if (binding.set == 0 && binding.binding < scene.buffers.size())
+            given = {scene.buffers[binding.binding], scene.top_level};
+        if (binding.acceleration_structure ? !given.structure : !given.buffer)
+            throw std::logic_error(fmt::format("kernel {} uses set {}, binding {}, which run() was not given", file_,
+                                               binding.set, binding.binding));
         vk::WriteDescriptorSet write(*sets_[binding.set], binding.binding, 0, 1, type_of(binding));
         if (binding.acceleration_structure) {
-            write.setPNext(&structure);
+            handles.push_back(given.structure);
+            structures.emplace_back(1, &handles.back());
+            write.setPNext(&structures.back());
         } else {
-            const bool known =
-                binding.set == 0 ? binding.binding < scene.buffers.size() : binding.binding < buffers.size();
-            const vk::Buffer buffer = !known             ? vk::Buffer()
-                                      : binding.set == 0 ? scene.buffers[binding.binding]
-                                                         : buffers[binding.binding];
-            if (!buffer)
-                throw std::logic_error(fmt::format("kernel {} uses set {}, binding {}, which run() was not given",
-                                                   file_, binding.set, binding.binding));
-            infos.emplace_back(buffer, 0, VK_WHOLE_SIZE);
+            infos.emplace_back(given.buffer, 0, VK_WHOLE_SIZE);
             write.setPBufferInfo(&infos.back());
         }
         writes.push_back(write);
@@ -136,7 +140,7 @@ double VulkanKernel::dispatch(uint32_t begin, uint32_t count) const {
     return std::min(double(ticks[1] - ticks[0]) * context_->can.timestamp_ns * 1e-9, wall);
 }
 
-double VulkanKernel::run(const SceneBindings& scene, std::span<const vk::Buffer> buffers, uint32_t begin,
+double VulkanKernel::run(const SceneBindings& scene, std::span<const KernelBinding> buffers, uint32_t begin,
                          uint32_t count) const {
     if (count == 0) return 0;
     bind(scene, buffers);
@@ -160,7 +164,7 @@ double VulkanKernel::run(const SceneBindings& scene, std::span<const vk::Buffer>
 void VulkanKernel::warm_up(const SceneBindings& scene, vk::Buffer anything) const {
     SceneBindings stand_in = scene;
     for (vk::Buffer& buffer : stand_in.buffers) buffer = anything;
-    const std::vector<vk::Buffer> buffers(64, anything);
+    const std::vector<KernelBinding> buffers(64, KernelBinding{anything, {}});
     bind(stand_in, buffers);
     dispatch(0, 0);
 }

@@ -18,13 +18,20 @@ struct SceneBindings {
     vk::AccelerationStructureKHR top_level;
 };
 
+// What is bound to a binding of set 1: a buffer, or the structure over the boxes in it, whichever the kernel asks for.
+struct KernelBinding {
+    vk::Buffer buffer;
+    vk::AccelerationStructureKHR structure;
+};
+
 class VulkanKernel final : public Kernel {
  public:
     VulkanKernel(std::shared_ptr<Context> context, std::string file, const CompiledShader& shader, uint32_t local_size);
 
     // Runs indices [begin, begin + count) in dispatches of about kDispatchSeconds, so that no watchdog trips. Returns the
     // seconds on the device.
-    double run(const SceneBindings& scene, std::span<const vk::Buffer> buffers, uint32_t begin, uint32_t count) const;
+    double run(const SceneBindings& scene, std::span<const KernelBinding> buffers, uint32_t begin,
+               uint32_t count) const;
 
     // Runs no index: some drivers (lavapipe) compile at the first dispatch. `anything` stands in for every buffer.
     void warm_up(const SceneBindings& scene, vk::Buffer anything) const;
@@ -37,7 +44,7 @@ class VulkanKernel final : public Kernel {
     uint32_t dispatches() const { return dispatches_; }
 
  private:
-    void bind(const SceneBindings& scene, std::span<const vk::Buffer> buffers) const;
+    void bind(const SceneBindings& scene, std::span<const KernelBinding> buffers) const;
     double dispatch(uint32_t begin, uint32_t count) const;
 
     std::shared_ptr<Context> context_;

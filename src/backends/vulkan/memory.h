@@ -5,6 +5,8 @@
 
 namespace lampyris::vulkan {
 
+class BoxStructure;
+
 // Bytes in use and their largest number, and the limit (0: none).
 struct MemoryAccount {
     size_t used = 0, peak = 0;
@@ -34,10 +36,11 @@ class VulkanBuffer final : public Buffer {
     vk::Buffer handle() const { return *buffer_; }
     vk::DeviceAddress address() const;  // for acceleration structures
     void* mapped() const { return mapped_; }
+    void check_range(size_t bytes, size_t offset) const;  // throws std::logic_error
+
+    std::shared_ptr<BoxStructure> boxes;  // over what the buffer holds, if it holds boxes
 
  private:
-    void check_range(size_t bytes, size_t offset) const;
-
     std::shared_ptr<Context> context_;
     std::shared_ptr<MemoryAccount> account_;
     std::string name_;

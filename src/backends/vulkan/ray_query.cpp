@@ -9,9 +9,6 @@
 namespace lampyris::vulkan {
 namespace {
 
-using Usage = vk::BufferUsageFlagBits;
-constexpr auto kInputUsage = Usage::eShaderDeviceAddress | Usage::eAccelerationStructureBuildInputReadOnlyKHR;
-
 // Rows 0 to 2 of an affine transform, as Vulkan wants them.
 vk::TransformMatrixKHR matrix_of(const kernel::TransformRecord& m) {
     vk::TransformMatrixKHR result;
@@ -25,9 +22,9 @@ vk::TransformMatrixKHR matrix_of(const kernel::TransformRecord& m) {
 }  // namespace
 
 AccelerationStructures::AccelerationStructures(std::shared_ptr<Context> context, std::shared_ptr<MemoryAccount> account,
-                                               const Scene& scene, bool staged)
-    : context_(std::move(context)), account_(std::move(account)), staged_(staged) {
-    for (uint32_t g = 0; g < scene.geometries.size(); ++g) geometries_.push_back(build_geometry(scene, g));
+                                               const Scene& scene, bool staged) {
+    StructureBuilder builder(std::move(context), std::move(account), staged);
+    for (uint32_t g = 0; g < scene.geometries.size(); ++g) geometries_.push_back(build_geometry(builder, scene, g));
     std::vector<vk::AccelerationStructureInstanceKHR> entries;
     for (uint32_t i = 0; i < std::max<size_t>(scene.instances.size(), 1); ++i) {
         const GeometrySet& set = scene.sets[i == 0 ? 0 : scene.instance_sets[i]];
@@ -45,38 +42,28 @@ AccelerationStructures::AccelerationStructures(std::shared_ptr<Context> context,
             entries.push_back(entry);
         }
     }
-    const auto data =
-        input(entries.data(), entries.size() * sizeof(entries[0]), "the instances of the acceleration structure");
-    vk::AccelerationStructureGeometryInstancesDataKHR instances;
-    instances.data.deviceAddress = data->address();
-    vk::AccelerationStructureGeometryKHR geometry;
-    geometry.geometryType = vk::GeometryTypeKHR::eInstances;
-    geometry.geometry.setInstances(instances);
-    top_ = build(vk::AccelerationStructureTypeKHR::eTopLevel, geometry, uint32_t(entries.size()));
+    const auto data = builder.input(entries.data(), entries.size() * sizeof(entries[0]),
+                                    "the instances of the acceleration structure");
+    builder.build(top_, vk::AccelerationStructureTypeKHR::eTopLevel, instances_at(data->address()),
+                  uint32_t(entries.size()));
 }
 
 AccelerationStructures::~AccelerationStructures() = default;
 
-std::unique_ptr<VulkanBuffer> AccelerationStructures::input(const void* data, size_t bytes, const char* name) {
-    auto buffer = std::make_unique<VulkanBuffer>(context_, account_, bytes, name,
-                                                 BufferOptions{.staged = staged_, .usage = kInputUsage});
-    if (bytes) buffer->upload(data, bytes, 0);
-    return buffer;
-}
-
-AccelerationStructures::Structure AccelerationStructures::build_geometry(const Scene& scene, uint32_t index) {
+AccelerationStructure AccelerationStructures::build_geometry(StructureBuilder& builder, const Scene& scene,
+                                                             uint32_t index) {
+    AccelerationStructure result;
     const kernel::GeometryRecord& record = scene.geometries[index];
-    vk::AccelerationStructureGeometryKHR geometry;
-    geometry.flags = vk::GeometryFlagBitsKHR::eOpaque;
     if (record.data.x == kernel::GEOMETRY_TRIANGLES) {
         const uint32_t count = record.attributes.z;
-        if (count == 0) return {};
+        if (count == 0) return result;
         const uint32_t* indices = &scene.indices[record.data.z];
         const uint32_t vertices = *std::max_element(indices, indices + 3 * size_t(count)) + 1;
         const auto index_data =
-            input(indices, 3 * size_t(count) * sizeof(uint32_t), "triangles for the acceleration structure");
-        const auto vertex_data = input(&scene.positions[3 * size_t(record.data.w)],
-                                       3 * size_t(vertices) * sizeof(float), "vertices for the acceleration structure");
+            builder.input(indices, 3 * size_t(count) * sizeof(uint32_t), "triangles for the acceleration structure");
+        const auto vertex_data =
+            builder.input(&scene.positions[3 * size_t(record.data.w)], 3 * size_t(vertices) * sizeof(float),
+                          "vertices for the acceleration structure");
         vk::AccelerationStructureGeometryTrianglesDataKHR triangles;
         triangles.vertexFormat = vk::Format::eR32G32B32Sfloat;
         triangles.vertexData.deviceAddress = vertex_data->address();
@@ -84,68 +71,24 @@ AccelerationStructures::Structure AccelerationStructures::build_geometry(const S
         triangles.maxVertex = vertices - 1;
         triangles.indexType = vk::IndexType::eUint32;
         triangles.indexData.deviceAddress = index_data->address();
+        vk::AccelerationStructureGeometryKHR geometry;
+        geometry.flags = vk::GeometryFlagBitsKHR::eOpaque;
         geometry.geometryType = vk::GeometryTypeKHR::eTriangles;
         geometry.geometry.setTriangles(triangles);
-        return build(vk::AccelerationStructureTypeKHR::eBottomLevel, geometry, count);
+        builder.build(result, vk::AccelerationStructureTypeKHR::eBottomLevel, geometry, count);
+        return result;
     }
-    geometry.flags = {};  // the kernel decides whether a box's primitive is hit
     const uint32_t count = record.data.x == kernel::GEOMETRY_BILINEAR ? record.attributes.z : 1;
     std::vector<vk::AabbPositionsKHR> boxes;
     for (uint32_t p = 0; p < count; ++p) {
         const PrimitiveBounds b = primitive_bounds(scene, index, p);
         boxes.emplace_back(b.low.x, b.low.y, b.low.z, b.high.x, b.high.y, b.high.z);
     }
-    if (boxes.empty()) return {};
-    const auto box_data = input(boxes.data(), boxes.size() * sizeof(boxes[0]), "boxes for the acceleration structure");
-    vk::AccelerationStructureGeometryAabbsDataKHR aabbs;
-    aabbs.data.deviceAddress = box_data->address();
-    aabbs.stride = sizeof(boxes[0]);
-    geometry.geometryType = vk::GeometryTypeKHR::eAabbs;
-    geometry.geometry.setAabbs(aabbs);
-    return build(vk::AccelerationStructureTypeKHR::eBottomLevel, geometry, count);
-}
-
-AccelerationStructures::Structure AccelerationStructures::build(vk::AccelerationStructureTypeKHR type,
-                                                                const vk::AccelerationStructureGeometryKHR& geometry,
-                                                                uint32_t count) {
-    vk::AccelerationStructureBuildGeometryInfoKHR info;
-    info.type = type;
-    info.flags = vk::BuildAccelerationStructureFlagBitsKHR::ePreferFastTrace;
-    info.mode = vk::BuildAccelerationStructureModeKHR::eBuild;
-    info.setGeometries(geometry);
-    const auto sizes = context_->device.getAccelerationStructureBuildSizesKHR(
-        vk::AccelerationStructureBuildTypeKHR::eDevice, info, count);
-    Structure result;
-    result.storage = std::make_unique<VulkanBuffer>(
-        context_, account_, sizes.accelerationStructureSize, "an acceleration structure",
-        BufferOptions{.staged = staged_,
-                      .usage = Usage::eShaderDeviceAddress | Usage::eAccelerationStructureStorageKHR});
-    result.structure = vk::raii::AccelerationStructureKHR(
-        context_->device, {{}, result.storage->handle(), 0, sizes.accelerationStructureSize, type});
-    constexpr vk::DeviceSize kScratchAlignment = 256;  // the largest that the specification lets a device ask for
-    const VulkanBuffer scratch(
-        context_, account_, sizes.buildScratchSize + kScratchAlignment, "building an acceleration structure",
-        BufferOptions{.staged = staged_, .usage = Usage::eShaderDeviceAddress | Usage::eStorageBuffer});
-    info.dstAccelerationStructure = *result.structure;
-    info.scratchData.deviceAddress =
-        (scratch.address() + kScratchAlignment - 1) / kScratchAlignment * kScratchAlignment;
-    const vk::AccelerationStructureBuildRangeInfoKHR range(count, 0, 0, 0);
-    context_->submit([&](vk::raii::CommandBuffer& commands) {
-        using Stage = vk::PipelineStageFlagBits;
-        using Access = vk::AccessFlagBits;
-        const vk::MemoryBarrier before(
-            Access::eTransferWrite | Access::eHostWrite | Access::eAccelerationStructureWriteKHR,
-            Access::eAccelerationStructureReadKHR | Access::eAccelerationStructureWriteKHR | Access::eShaderRead);
-        commands.pipelineBarrier(Stage::eTransfer | Stage::eHost | Stage::eAccelerationStructureBuildKHR,
-                                 Stage::eAccelerationStructureBuildKHR, {}, before, {}, {});
-        commands.buildAccelerationStructuresKHR(info, &range);
-        const vk::MemoryBarrier after(Access::eAccelerationStructureWriteKHR, Access::eAccelerationStructureReadKHR);
-        commands.pipelineBarrier(Stage::eAccelerationStructureBuildKHR,
-                                 Stage::eAccelerationStructureBuildKHR | Stage::eComputeShader, {}, after, {}, {});
-    });
-    vk::AccelerationStructureDeviceAddressInfoKHR address_info;
-    address_info.accelerationStructure = *result.structure;
-    result.address = context_->device.getAccelerationStructureAddressKHR(address_info);
+    if (boxes.empty()) return result;
+    const auto box_data =
+        builder.input(boxes.data(), boxes.size() * sizeof(boxes[0]), "boxes for the acceleration structure");
+    // Not opaque: the kernel decides whether a box's primitive is hit.
+    builder.build(result, vk::AccelerationStructureTypeKHR::eBottomLevel, boxes_at(box_data->address()), count);
     return result;
 }
 

@@ -1,7 +1,7 @@
-// Acceleration structures for VK_KHR_ray_query (core/kernel/trace_ray_query.h).
+// A scene's acceleration structures for VK_KHR_ray_query (core/kernel/trace_ray_query.h).
 #pragma once
 
-#include "backends/vulkan/memory.h"
+#include "backends/vulkan/acceleration_structure.h"
 
 namespace lampyris {
 struct Scene;
@@ -20,21 +20,10 @@ class AccelerationStructures {
     vk::AccelerationStructureKHR top_level() const { return *top_.structure; }
 
  private:
-    struct Structure {
-        std::unique_ptr<VulkanBuffer> storage;
-        vk::raii::AccelerationStructureKHR structure = nullptr;
-        vk::DeviceAddress address = 0;
-    };
-    Structure build(vk::AccelerationStructureTypeKHR type, const vk::AccelerationStructureGeometryKHR& geometry,
-                    uint32_t count);
-    Structure build_geometry(const Scene& scene, uint32_t geometry);
-    std::unique_ptr<VulkanBuffer> input(const void* data, size_t bytes, const char* name);
+    static AccelerationStructure build_geometry(StructureBuilder& builder, const Scene& scene, uint32_t geometry);
 
-    std::shared_ptr<Context> context_;
-    std::shared_ptr<MemoryAccount> account_;
-    bool staged_ = false;
-    std::vector<Structure> geometries_;
-    Structure top_;
+    std::vector<AccelerationStructure> geometries_;
+    AccelerationStructure top_;
 };
 
 }  // namespace lampyris::vulkan

@@ -169,11 +169,12 @@ Spirv optimize(std::string_view kernel_file, const Spirv& spirv) {
 
 std::string shader_source(std::string_view kernel_file, const ShaderOptions& options) {
     std::string includes;
-    bool int64 = false;
+    bool int64 = false, ray_query = options.ray_query;
     for (const std::string_view part : kernel_parts(kernel_file)) {
         includes += fmt::format("#include \"{}\"\n", part);
         const std::string_view* text = find_kernel_text(part);
         int64 = int64 || (text && text->find("uint64") != std::string_view::npos);
+        ray_query = ray_query || (text && text->find("accelerationStructureEXT") != std::string_view::npos);
     }
     return fmt::format(
         "#version 460\n"
@@ -187,7 +188,7 @@ std::string shader_source(std::string_view kernel_file, const ShaderOptions& opt
         int64 ? "#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require\n"
                 "#extension GL_EXT_shader_atomic_int64 : require\n"
               : "",
-        options.ray_query ? "#extension GL_EXT_ray_query : require\n" : "", options.ray_query ? "ray_query" : "bvh2",
+        ray_query ? "#extension GL_EXT_ray_query : require\n" : "", options.ray_query ? "ray_query" : "bvh2",
         options.local_size, options.effects, includes);
 }
 
