@@ -71,6 +71,9 @@ void PhotonMap::open(Device& device) {
     if (capabilities().int64_atomics && !device.offers(DeviceFeature::kInt64Atomics))
         throw MachineError(fmt::format("error: photon map {} needs 64-bit atomics, which {} does not offer", name(),
                                        device.description()));
+    if (capabilities().boxes && !device.offers(DeviceFeature::kBoxes))
+        throw MachineError(fmt::format("error: photon map {} is to use VK_KHR_ray_query, which {} does not offer",
+                                       name(), device.description()));
     for (const char* file : {kClear, kScanSum, kScanWrite}) compiled(file, 0);
     for (const std::string& file : kernels()) compiled(file, 0);
 }
@@ -115,7 +118,7 @@ void PhotonMap::run_gather(std::span<const Kernel* const> kernels, const PhotonC
 }
 
 size_t PhotonMap::memory_bytes() const {
-    size_t bytes = 0;
+    size_t bytes = structure_bytes_;
     for (const auto& [name, buffer] : buffers_) bytes += buffer->size();
     return bytes;
 }

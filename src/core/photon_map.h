@@ -31,7 +31,7 @@ struct PhotonMapCapabilities {
     bool needs_queries = false;  // build() reads the queries: a structure over hit points
     bool sums_only = false;  // hands consumers sums, not photons: gather_value and gather_sums (core/kernel/gather.h)
     bool k_nearest = false;  // can also find the k nearest
-    bool int64_atomics = false;  // what it needs of the device
+    bool int64_atomics = false, boxes = false;  // what it needs of the device (DeviceFeature)
 };
 
 // What a map is built from.
@@ -89,7 +89,8 @@ class PhotonMap {
     // Buffers are kept for the next build, and grow where it needs more. The photons' buffer must live, unchanged, until
     // the last gather.
     void build(const PhotonSet& photons);
-    // For the queries [first, first + count): position, radius (at most the set's, for speed; any is right).
+    // For the queries [first, first + count): position, radius (at most the set's, for speed; any is right, but where the map
+    // needs_queries).
     void gather(const PhotonConsumer& consumer, const BufferHandle& queries, uint32_t first, uint32_t count);
 
     PhotonMapStatistics statistics() const { return statistics_; }
@@ -123,6 +124,10 @@ class PhotonMap {
     void clear(const BufferHandle& buffer, size_t bytes);  // to zero, on the device
     // Replaces each of `count` words by the sum of those before it.
     void scan(const BufferHandle& values, uint32_t count);
+    // Device::build_boxes; what it takes counts as the map's memory.
+    void build_boxes(const BufferHandle& boxes, uint32_t count) {
+        structure_bytes_ = device().build_boxes(boxes, count);
+    }
     // Sorts `count` pairs of words (key, value) by the `bits` lowest bits of the key, stably. `other` is room for as many; returns
     // which of both holds the result. Kernels that use it name kRadixKernels among theirs.
     BufferHandle radix_sort(const BufferHandle& pairs, const BufferHandle& other, uint32_t count, uint32_t bits);
@@ -144,6 +149,7 @@ class PhotonMap {
     Device* device_ = nullptr;
     std::map<std::pair<std::string, uint32_t>, KernelHandle> kernels_;
     std::map<std::string, BufferHandle> buffers_;
+    size_t structure_bytes_ = 0;
 };
 
 struct PhotonMapFactory {

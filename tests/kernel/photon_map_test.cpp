@@ -21,6 +21,15 @@ std::unique_ptr<PhotonMap> open_map(Device& device, const std::string& choice) {
     return map;
 }
 
+// The first backend's that can run it; null where there is none.
+std::unique_ptr<Device> device_for(const std::string& choice) {
+    for (const std::string& backend : usable_backends()) {
+        auto device = create_device(backend);
+        if (can_run(*device, *create_photon_map(choice))) return device;
+    }
+    return nullptr;
+}
+
 // photon_map_long_test has the sizes that count.
 TEST(PhotonMap, ExactOnesFindWhatBruteForceFinds) {
     std::vector<std::string> maps = exact_photon_maps();
@@ -39,8 +48,10 @@ TEST(PhotonMap, FixedOrderMeansTheSameSums) {
     std::vector<std::string> choices;
     for (const std::string& name : photon_maps().names())
         if (create_photon_map(name)->capabilities().fixed_order) choices.push_back(name);
-    for (const char* other : {"stochastic_hash:slots=3,table_size=0.1"}) choices.emplace_back(other);
-    ASSERT_FALSE(choices.empty());
+    for (const char* other : {"stochastic_hash:slots=3,table_size=0.1", "bvh:ray_query=off"}) {
+        ASSERT_TRUE(create_photon_map(other)->capabilities().fixed_order) << other;
+        choices.emplace_back(other);
+    }
     struct Machine {
         std::string backend;
         unsigned threads;
@@ -72,9 +83,12 @@ TEST(PhotonMap, FixedOrderMeansTheSameSums) {
 TEST(PhotonMap, NoPhotonsAndNoQueriesAreNoError) {
     for (const std::string& backend : usable_backends()) {
         const auto device = create_device(backend);
-        for (const std::string& name : photon_maps().names()) {
-            SCOPED_TRACE(backend + " " + name);
-            const auto map = open_map(*device, name);
+        std::vector<std::string> choices = photon_maps().names();
+        choices.emplace_back("bvh:ray_query=on");
+        for (const std::string& choice : choices) {
+            SCOPED_TRACE(backend + " " + choice);
+            if (!can_run(*device, *create_photon_map(choice))) continue;
+            const auto map = open_map(*device, choice);
             PhotonSet set = upload_case(*device, make_photon_case("random", 10, 10));
             set.count = 0;
             for (const CollectResult& result : collect(*device, *map, set)) EXPECT_EQ(result.found.x, 0u);
@@ -84,9 +98,10 @@ TEST(PhotonMap, NoPhotonsAndNoQueriesAreNoError) {
 }
 
 TEST(PhotonMap, MapsAreReusedFromPassToPass) {
-    const auto device = create_device("cpu");
     for (const std::string& choice : exact_photon_maps()) {
         SCOPED_TRACE(choice);
+        const auto device = device_for(choice);
+        if (!device) continue;
         const auto map = open_map(*device, choice);
         const auto fresh = open_map(*device, "brute_force");
         size_t bytes = 0;
@@ -103,6 +118,55 @@ TEST(PhotonMap, MapsAreReusedFromPassToPass) {
         EXPECT_GT(statistics.construction_s, 0);
         EXPECT_GT(statistics.gathering_kernel_s, 0);
         EXPECT_EQ(statistics.lost_photons, 0u);
+    }
+}
+
+// The set's radius is that of the largest query for speed only, but where a structure over the hit points is laid out by it.
+TEST(PhotonMap, QueriesMayBeLargerThanTheSetSays) {
+    for (const std::string& choice : exact_photon_maps()) {
+        SCOPED_TRACE(choice);
+        const auto device = device_for(choice);
+        if (!device || create_photon_map(choice)->capabilities().needs_queries) continue;
+        PhotonSet set = upload_case(*device, make_photon_case("random", 5000, 1000));
+        set.radius *= 0.5f;
+        const auto found = collect(*device, *open_map(*device, choice), set);
+        const auto expected = collect(*device, *open_map(*device, "brute_force"), set);
+        for (size_t i = 0; i < found.size(); ++i)
+            ASSERT_TRUE(same_photons(found[i], expected[i], false)) << "query " << i;
+    }
+}
+
+// ray_query=on is refused where the device does not offer it; auto does as the device does with the rays of a scene.
+TEST(PhotonMap, RayQueryIsWhatWasAskedFor) {
+    const auto bytes = [](Device& device, const char* choice) {
+        const auto map = open_map(device, choice);
+        collect(device, *map, upload_case(device, make_photon_case("random", 1000, 100)));
+        return map->memory_bytes();
+    };
+    for (const DeviceInfo& info : list_devices()) {
+        SCOPED_TRACE(info.name);
+        DeviceOptions options;
+        options.device = std::to_string(info.index);
+        const auto feature = info.features.find("ray_query");
+        if (feature == info.features.end() || feature->second != "yes") {
+            const auto device = create_device(info.backend, options);
+            EXPECT_EQ(bytes(*device, "bvh"), bytes(*device, "bvh:ray_query=off"));
+            try {
+                open_map(*device, "bvh:ray_query=on");
+                ADD_FAILURE() << "was not refused";
+            } catch (const MachineError& error) {
+                EXPECT_NE(std::string(error.what()).find("VK_KHR_ray_query"), std::string::npos) << error.what();
+            }
+            EXPECT_THROW(device->build_boxes(device->create_buffer(24, "boxes"), 1), MachineError);
+            continue;
+        }
+        for (const char* rays : {"on", "off"}) {
+            options.settings["ray_query"] = rays;
+            const auto device = create_device(info.backend, options);
+            const size_t on = bytes(*device, "bvh:ray_query=on"), off = bytes(*device, "bvh:ray_query=off");
+            EXPECT_NE(on, off);
+            EXPECT_EQ(bytes(*device, "bvh"), std::string(rays) == "on" ? on : off);
+        }
     }
 }
 

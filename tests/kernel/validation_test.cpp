@@ -3,8 +3,11 @@
 #include "core/device.h"
 #include "core/error.h"
 #include "core/scene/scene.h"
+#include "support/photon_sets.h"
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
 
 namespace lampyris {
 namespace {
@@ -88,6 +91,17 @@ TEST(Validation, KernelsRunWithoutAMessage) {
             const auto counter = device->create_buffer(4, "counter");
             const BufferHandle more[] = {rays, hits, counter};
             device->run(*square, nullptr, more, 3, 100);
+            // Structures over boxes that a kernel wrote: built, walked, and built again, larger and smaller.
+            if (!device->offers(DeviceFeature::kBoxes)) return;
+            const auto map = create_photon_map("bvh:ray_query=on");
+            map->open(*device);
+            for (const uint32_t photons : {1000u, 3000u, 0u, 500u}) {
+                PhotonSet set = test::upload_case(*device, test::make_photon_case("random", 3000, 100));
+                set.count = photons;
+                const auto results = test::collect(*device, *map, set);
+                EXPECT_EQ(photons == 0, std::all_of(results.begin(), results.end(),
+                                                    [](const auto& result) { return result.found.x == 0; }));
+            }
         };
         ASSERT_NO_THROW(work());
         EXPECT_FALSE(vulkan::provoke_validation_message(*device).empty()) << "the layers slept";

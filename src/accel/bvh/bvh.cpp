@@ -10,15 +10,20 @@ namespace lampyris {
 namespace {
 
 struct TreeRecord {  // of bvh.layout.h
-    glm::vec4 origin;
+    glm::vec4 origin, radius;
     glm::uvec4 sizes;
     glm::uvec4 levels[16];
 };
 
+enum RayQuery : uint32_t { kAuto, kOn, kOff };
+
 class Bvh : public PhotonMap {
  public:
     BvhParams params;
-    PhotonMapCapabilities capabilities() const override { return {.exact = true, .fixed_order = true}; }
+    PhotonMapCapabilities capabilities() const override {
+        // A driver walks boxes in an order of its own.
+        return {.exact = true, .fixed_order = params.ray_query == kOff, .boxes = params.ray_query == kOn};
+    }
     ConstructionTraffic traffic() const override { return {.accesses = 1, .sorted_bits = 32}; }  // the photon
 
  protected:
@@ -26,8 +31,15 @@ class Bvh : public PhotonMap {
     static constexpr const char* kOrder = "accel/bvh/bvh_order.kernel.h";
     static constexpr const char* kLeaves = "accel/bvh/bvh_leaves.kernel.h";
     static constexpr const char* kLevel = "accel/bvh/bvh_level.kernel.h";
+    static constexpr const char* kBoxes = "accel/bvh/bvh_boxes.kernel.h";
+    bool ray_query() const {
+        return params.ray_query == kOn || (params.ray_query == kAuto && device().offers(DeviceFeature::kRayQuery));
+    }
+    std::vector<std::string> gather_files() const override {
+        return {ray_query() ? "bvh_ray_query.gather.h" : "bvh.gather.h"};
+    }
     std::vector<std::string> kernels() const override {
-        return {kCode, kOrder, kLeaves, kLevel, kRadixKernels[0], kRadixKernels[1]};
+        return {kCode, kOrder, kBoxes, kLeaves, kLevel, kRadixKernels[0], kRadixKernels[1]};
     }
 
     // Where each level's boxes lie. Returns their number.
@@ -45,6 +57,7 @@ class Bvh : public PhotonMap {
     void construct(const PhotonSet& photons) override {
         const uint32_t count = photons.count;
         TreeRecord record{};
+        record.radius.x = photons.radius;
         record.sizes = {count, params.leaf, 0, 0};
         const glm::vec3 extent = photons.high - photons.low;
         const float largest = std::max({extent.x, extent.y, extent.z, 0.0f});
@@ -53,11 +66,17 @@ class Bvh : public PhotonMap {
         const BufferHandle tree = upload("tree", record);
         const BufferHandle pairs = keep("pairs", size_t(count) * 8), other = keep("pairs 2", size_t(count) * 8);
         const BufferHandle places = keep("places", size_t(count) * 16), fluxes = keep("fluxes", size_t(count) * 16);
-        const BufferHandle boxes = keep("boxes", size_t(boxes_count) * 32);
+        const BufferHandle boxes = keep("boxes", ray_query() ? size_t(count) * 24 : size_t(boxes_count) * 32);
         run(kCode, {tree, photons.photons, pairs}, count);
         const BufferHandle sorted = radix_sort(pairs, other, count, 32);
         const BufferHandle order = sorted == pairs ? other : pairs;
         run(kOrder, {tree, photons.photons, sorted, order}, count);
+        if (ray_query()) {
+            // In order, photons of neighbouring boxes lie together; and not every driver (Mesa 25's lavapipe) sorts boxes.
+            run(kBoxes, {tree, photons.photons, order, places, fluxes, boxes}, count);
+            build_boxes(boxes, count);
+            return;
+        }
         run(kLeaves, {tree, photons.photons, order, places, fluxes, boxes}, record.levels[0].y);
         for (uint32_t level = 1; level < record.sizes.z; ++level) {
             record.sizes.w = level;
