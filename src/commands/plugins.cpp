@@ -110,7 +110,7 @@ void print_markdown(const std::vector<const RegistryBase*>& kinds) {
 }
 
 std::vector<const RegistryBase*> wanted_kinds(const PluginsOptions& options) {
-    const std::vector<const RegistryBase*> all = registries();
+    std::vector<const RegistryBase*> all = registries();
     if (options.kind.empty()) return all;
     std::vector<std::string> names;
     for (const RegistryBase* registry : all) {

@@ -47,7 +47,7 @@ void ProgressDisplay::show(const RenderProgress& progress) {
                                          progress.passes, rate * 1e-6, duration_text(left), error_text(progress));
     if (terminal_) {
         constexpr int kWidth = 20;
-        const int filled = int(share * kWidth + 0.5);
+        const int filled = static_cast<int>(std::lround(share * kWidth));
         fmt::print(stderr, "\r\033[K[{:#<{}}{:-<{}}] {}{}", "", filled, "", kWidth - filled, line,
                    progress.finished ? "\n" : "");
         std::fflush(stderr);

@@ -181,7 +181,7 @@ int render(const RenderOptions& options) {
     session.on_progress = [&](const RenderProgress& progress, const Film& current) {
         ConvergencePoint point{progress.wall_s, progress.passes, progress.estimated_error, {}};
         if (reference) point.against_reference = measure(current.rgb(), *reference);
-        run.convergence.push_back(std::move(point));
+        run.convergence.push_back(point);
         display.show(progress);
     };
     install_interrupt_handler();
