@@ -5,6 +5,7 @@
 #include "core/scene/scene.h"
 
 #include <fmt/format.h>
+#include <emmintrin.h>
 
 #include <algorithm>
 #include <atomic>
@@ -30,13 +31,8 @@ bool count_memory(void* total, ssize_t bytes, bool) {
 // Embree ends the process (an assertion, in the libraries of Debian) on a ray that is not finite or reaches this far.
 constexpr float kLargestRay = 1.8e18f;
 
-RTCRay make_ray(const float o[3], const float d[3], float t_max) {
-    RTCRay ray;
-    ray.org_x = o[0], ray.org_y = o[1], ray.org_z = o[2];
-    ray.dir_x = d[0], ray.dir_y = d[1], ray.dir_z = d[2];
-    ray.tnear = 0.0f, ray.tfar = t_max, ray.time = 0.0f;
-    ray.mask = ~0u, ray.id = 0, ray.flags = 0;
-    return ray;
+__m128 load3(const float v[3]) {
+    return _mm_movelh_ps(_mm_castpd_ps(_mm_load_sd(reinterpret_cast<const double*>(v))), _mm_load_ss(v + 2));
 }
 
 }  // namespace
@@ -81,11 +77,17 @@ EmbreeScene::EmbreeScene(const Scene& scene, void* const* scene_buffers)
 
 CpuTracer EmbreeScene::tracer() { return {this, &EmbreeScene::closest, &EmbreeScene::occluded}; }
 
-// Such rays meet nothing, as in the other tracers; what they were made from is not finite, and is reported as a sample.
-bool EmbreeScene::traceable(const float o[3], const float d[3], float t_max) const {
-    const float m = largest_ray_;
-    return (std::abs(o[0]) <= m) & (std::abs(o[1]) <= m) & (std::abs(o[2]) <= m) & (std::abs(d[0]) <= m) &
-           (std::abs(d[1]) <= m) & (std::abs(d[2]) <= m) & (t_max >= 0.0f);
+// False for rays that meet nothing, as in the other tracers: what they were made from is not finite, and is reported as a
+// sample. Embree's records begin with the origin and tnear, then the direction and time.
+bool EmbreeScene::make_ray(const float origin[3], const float direction[3], float t_max, RTCRay& ray) const {
+    const __m128 o = load3(origin), d = load3(direction), limit = _mm_set1_ps(largest_ray_);
+    _mm_store_ps(&ray.org_x, o);
+    _mm_store_ps(&ray.dir_x, d);
+    ray.tfar = t_max, ray.mask = ~0u, ray.id = 0, ray.flags = 0;
+    const __m128 sign = _mm_set1_ps(-0.0f);
+    const __m128 in_range =
+        _mm_and_ps(_mm_cmple_ps(_mm_andnot_ps(sign, o), limit), _mm_cmple_ps(_mm_andnot_ps(sign, d), limit));
+    return (_mm_movemask_ps(in_range) == 15) & (t_max >= 0.0f);
 }
 
 void EmbreeScene::attach_geometries(RTCScene target, uint32_t set) {
@@ -122,9 +124,8 @@ EmbreeGeometry EmbreeScene::make_geometry(uint32_t index) {
 
 bool EmbreeScene::closest(void* self, const float origin[3], const float direction[3], float t_max, TraceHit& hit) {
     const EmbreeScene& scene = *static_cast<const EmbreeScene*>(self);
-    if (!scene.traceable(origin, direction, t_max)) return false;
     RTCRayHit ray;
-    ray.ray = make_ray(origin, direction, t_max);
+    if (!scene.make_ray(origin, direction, t_max, ray.ray)) return false;
     ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     RTCIntersectContext context;
@@ -144,8 +145,8 @@ bool EmbreeScene::closest(void* self, const float origin[3], const float directi
 
 bool EmbreeScene::occluded(void* self, const float origin[3], const float direction[3], float t_max) {
     const EmbreeScene& scene = *static_cast<const EmbreeScene*>(self);
-    if (!scene.traceable(origin, direction, t_max)) return false;
-    RTCRay ray = make_ray(origin, direction, t_max);
+    RTCRay ray;
+    if (!scene.make_ray(origin, direction, t_max, ray)) return false;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     rtcOccluded1(scene.top_.get(), &context, &ray);

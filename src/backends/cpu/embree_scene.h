@@ -52,7 +52,7 @@ class EmbreeScene {
         const EmbreeScene* owner;
         uint32_t geometry;
     };
-    bool traceable(const float origin[3], const float direction[3], float t_max) const;
+    bool make_ray(const float origin[3], const float direction[3], float t_max, RTCRay& ray) const;
     void attach_geometries(RTCScene target, uint32_t set);
     EmbreeGeometry make_geometry(uint32_t index);
     static bool closest(void* self, const float origin[3], const float direction[3], float t_max, TraceHit& hit);
