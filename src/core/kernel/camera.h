@@ -36,15 +36,18 @@ FN float sample_filter_table(uint table, uint count, float radius, float u, INOU
     float centred = 2.0f * u - 1.0f;
     float share = min(abs(centred), ONE_MINUS_EPSILON);
     uint cdf = table + count + 1u;
-    // From the guide's interval on: a step or two, where a search would guess wrong at every other one.
+    // From the guide's interval on; the first step, which chance decides, without a branch.
     uint cell = uint(distributions[cdf + count + 2u + uint(share * float(count))]);
+    cell += uint(cell + 1u < count && distributions[cdf + cell + 1u] <= share);
     while (cell + 1u < count && distributions[cdf + cell + 1u] <= share) cell += 1u;
     float a = distributions[table + cell];
     float b = distributions[table + cell + 1u];
-    float x = sample_linear(place_in_interval(cdf + cell, share), abs(a), abs(b));
     if (a + b < 0.0f) sign = -sign;
-    float offset = (float(cell) + x) * (radius / float(count));
-    return centred < 0.0f ? -offset : offset;
+    // sample_linear at the share's place in the interval, (share - cdf) / (a + b): the nodes are scaled to make it so.
+    float rest = share - distributions[cdf + cell];
+    float root = safe_sqrt(a * a + rest * (abs(b) - abs(a)));
+    float x = min(rest / max(abs(a) + root, 1e-20f), ONE_MINUS_EPSILON);
+    return copy_sign((float(cell) + x) * (radius / float(count)), centred);
 }
 
 // Offset from the pixel's centre, in pixels, with density |filter| / integral of |filter|. The weight's expected value is 1;

@@ -42,6 +42,14 @@ inline uint bitfieldReverse(uint x) {
     x = ((x & 0x33333333u) << 2u) | ((x & 0xccccccccu) >> 2u);
     return ((x & 0x55555555u) << 1u) | ((x & 0xaaaaaaaau) >> 1u);
 }
+// Two at once, in one register of 64 bits.
+inline uvec2 bitfieldReverse(uvec2 v) {
+    uint64_t x = __builtin_bswap64((uint64_t(v.x) << 32u) | v.y);
+    x = ((x & 0x0f0f0f0f0f0f0f0fu) << 4u) | ((x >> 4u) & 0x0f0f0f0f0f0f0f0fu);
+    x = ((x & 0x3333333333333333u) << 2u) | ((x >> 2u) & 0x3333333333333333u);
+    x = ((x & 0x5555555555555555u) << 1u) | ((x >> 1u) & 0x5555555555555555u);
+    return uvec2(uint(x), uint(x >> 32u));
+}
 // GLM's is `x >= 0 ? x : -x`: a comparison and a choice where one bit has to be cleared.
 inline float abs(float x) { return __builtin_fabsf(x); }
 inline int abs(int x) { return x < 0 ? -x : x; }

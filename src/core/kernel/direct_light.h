@@ -14,9 +14,8 @@ FN vec3 direct_light(IN(Surface) s, IN(Frame) frame, IN(Bsdf) bsdf, vec3 wo, uin
     if (is_black(f)) return vec3(0.0f);
     vec3 arriving = scene_transmittance(s, light.wi, light.distance, medium, rays);
     if (is_black(arriving)) return vec3(0.0f);
-    float weight = 1.0f;
-    if (weighted && light.is_delta == 0u) weight = power_heuristic(light.pdf, density);
-    vec3 reflected = f * light.radiance * (weight / light.pdf);
+    if (!weighted || light.is_delta != 0u) density = 0.0f;
+    vec3 reflected = f * light.radiance * power_heuristic_over_pdf(light.pdf, density);
     return HAS(EFFECT_MEDIUM) ? reflected * arriving : reflected;
 }
 

@@ -13,7 +13,7 @@ FN uint find_interval(uint first, uint count, float u) {
     uint size = count;
     while (size > 1u) {
         uint half_size = size >> 1u;
-        low = distributions[first + low + half_size] <= u ? low + half_size : low;
+        low += half_size & (0u - uint(distributions[first + low + half_size] <= u));
         size -= half_size;
     }
     return low;

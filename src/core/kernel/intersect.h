@@ -28,19 +28,18 @@ FN void triangle_surface(uint geometry, uint primitive, vec3 o, vec3 d, INOUT(Su
     vec3 n = cross3(e1, e2);
     vec3 from = o - p0;
     vec3 q = cross3(d, e2);
-    float det = dot3(e1, q);
+    float det = -dot3(d, n);  // e1 . (d x e2)
     vec3 r = cross3(from, e1);
     float inverse = det != 0.0f ? 1.0f / det : 0.0f;
     // Rounding may put the point just outside: back onto the triangle.
     float b1 = clamp(dot3(from, q) * inverse, 0.0f, 1.0f);
     float b2 = clamp(dot3(d, r) * inverse, 0.0f, 1.0f - b1);
     float b0 = 1.0f - b1 - b2;
-    float along = dot3(d, n);
-    s.distance = along != 0.0f ? -dot3(from, n) / along : 0.0f;
+    s.distance = dot3(from, n) * inverse;
     s.position = b0 * p0 + b1 * p1 + b2 * p2;
     s.error = gamma_bound(7.0f) * (abs(b0 * p0) + abs(b1 * p1) + abs(b2 * p2));
     float n_length = length_of(n);
-    s.ng = n_length > 0.0f ? n / n_length : -d / length_of(d);
+    s.ng = n_length > 0.0f ? n * (1.0f / n_length) : -unit(d);
 
     s.uv = vec2(0.0f);
     s.dpdu = vec3(0.0f);

@@ -199,7 +199,7 @@ struct LightRecord {
     vec4
         v1;  // triangle: p1 (order of the indices), w: distance of the farthest corner from the centroid. spot: unit axis (away from the light), w: cosine at which the falloff begins
     vec4
-        v2;  // triangle: p2. spot: w: cosine at which it ends. projection: the picture's xmin, ymin, xmax, ymax at z = 1 in light space
+        v2;  // triangle: p2, w: 1 / area. spot: w: cosine at which it ends. projection: the picture's xmin, ymin, xmax, ymax at z = 1 in light space
     vec4
         normal;  // triangle: unit normal, turned as the geometry's flags say; w: 1 where vertex normals turn it (point by point)
 };

@@ -22,6 +22,12 @@ FN vec3 lerp3_of(float t, vec3 a, vec3 b) { return (1.0f - t) * a + t * b; }
 FN float copy_sign(float magnitude, float sign_of) {
     return uintBitsToFloat((floatBitsToUint(magnitude) & 0x7fffffffu) | (floatBitsToUint(sign_of) & 0x80000000u));
 }
+// Swaps a and b if told to, without a branch: of random numbers no processor foresees which is larger.
+FN void swap_if(bool swapped, INOUT(float) a, INOUT(float) b) {
+    uint difference = (floatBitsToUint(a) ^ floatBitsToUint(b)) & (0u - uint(swapped));
+    a = uintBitsToFloat(floatBitsToUint(a) ^ difference);
+    b = uintBitsToFloat(floatBitsToUint(b) ^ difference);
+}
 FN float max_component(vec3 v) { return max(v.x, max(v.y, v.z)); }
 FN float min_component(vec3 v) { return min(v.x, min(v.y, v.z)); }
 FN float dot3(vec3 a, vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
@@ -29,10 +35,7 @@ FN float length_squared(vec3 v) { return v.x * v.x + v.y * v.y + v.z * v.z; }
 FN float length_of(vec3 v) { return sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
 FN float distance_of(vec3 a, vec3 b) { return length_of(a - b); }
 // Unit vector; v must not be zero.
-FN vec3 unit(vec3 v) {
-    float l = sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-    return vec3(v.x / l, v.y / l, v.z / l);
-}
+FN vec3 unit(vec3 v) { return v * (1.0f / sqrt(v.x * v.x + v.y * v.y + v.z * v.z)); }
 FN float abs_dot(vec3 a, vec3 b) { return abs(dot3(a, b)); }
 FN vec3 cross3(vec3 a, vec3 b) { return vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x); }
 // v, turned to the side of n.
@@ -44,15 +47,21 @@ FN bool is_finite3(vec3 v) { return is_finite(v.x) && is_finite(v.y) && is_finit
 // Bound of the relative error of n operations (Higham 2002, section 3.1).
 FN float gamma_bound(float n) { return (n * MACHINE_EPSILON) / (1.0f - n * MACHINE_EPSILON); }
 
-// sin and cos for |x| up to a few thousand; absolute error below 1e-7.
+// sin and cos for |x| up to pi/4; absolute error below 1e-7.
+FN void sin_cos_of_octant(float x, OUT(float) s, OUT(float) c) {
+    float z = x * x;
+    s = ((-1.9515295891e-4f * z + 8.3321608736e-3f) * z - 1.6666654611e-1f) * z * x + x;
+    c = ((2.443315711809948e-5f * z - 1.388731625493765e-3f) * z + 4.166664568298827e-2f) * z * z - 0.5f * z + 1.0f;
+}
+
+// The same for |x| up to a few thousand.
 FN void sin_cos(float x, OUT(float) s, OUT(float) c) {
     int n = int(x * 0.636619772367581f + copy_sign(0.5f, x));  // to the nearest; floor is a long way without SSE 4.1
     float q = float(n);
     float y = ((x - q * 1.5703125f) - q * 4.837512969970703125e-4f) - q * 7.549789954891882e-8f;
-    float z = y * y;
-    float sine = ((-1.9515295891e-4f * z + 8.3321608736e-3f) * z - 1.6666654611e-1f) * z * y + y;
-    float cosine =
-        ((2.443315711809948e-5f * z - 1.388731625493765e-3f) * z + 4.166664568298827e-2f) * z * z - 0.5f * z + 1.0f;
+    float sine;
+    float cosine;
+    sin_cos_of_octant(y, sine, cosine);
     int quadrant = n & 3;
     float a = (quadrant & 1) != 0 ? cosine : sine;
     float b = (quadrant & 1) != 0 ? sine : cosine;
@@ -214,24 +223,12 @@ FN vec3 transform_error(vec4 r0, vec4 r1, vec4 r2, vec3 p, vec3 e) {
     return (g + 1.0f) * carried + g * from_rounding;
 }
 
-// The float after x in the direction of `offset`'s sign; x where the offset is zero. Signs of coordinates are as good as random:
-// no branch depends on them.
-FN float step_away(float x, float offset) {
-    uint bits = floatBitsToUint(x);
-    uint towards_zero = (bits ^ floatBitsToUint(offset)) >> 31u;
-    float next = uintBitsToFloat(bits + 1u - 2u * towards_zero);
-    next = x == 0.0f ? copy_sign(1.17549435e-38f, offset) : next;  // denormals are flushed to zero
-    return offset == 0.0f ? x : next;
-}
-
 // Where a ray that leaves p towards `direction` starts: outside of p's error box, on the direction's side of the surface
-// (pbrt, 4th edition, section 6.8.6). The offset follows the float error at the hit, not a scene-wide epsilon.
+// (pbrt, 4th edition, section 6.8.6). The offset follows the float error at the hit, not a scene-wide epsilon. It is longer than
+// the box asks for by four times what rounding the sum can take back.
 FN vec3 offset_origin(vec3 p, vec3 error, vec3 ng, vec3 direction) {
-    float d = abs(ng.x) * error.x + abs(ng.y) * error.y + abs(ng.z) * error.z;
-    vec3 offset = d * ng;
-    if (dot3(direction, ng) < 0.0f) offset = -offset;
-    vec3 o = p + offset;
-    return vec3(step_away(o.x, offset.x), step_away(o.y, offset.y), step_away(o.z, offset.z));
+    float d = dot3(abs(ng), error + (4.0f * MACHINE_EPSILON) * abs(p));
+    return p + copy_sign(d, dot3(direction, ng)) * ng;
 }
 
 // ---- Equal-area octahedral map (Clarberg 2008), as pbrt-v4's environment images use it: the pole is +z ------------------

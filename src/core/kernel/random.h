@@ -72,28 +72,58 @@ FN Sampler sampler_begin(uint pixel, uint sample_index, uint seed, uint kind) {
     return s;
 }
 
-// Seeds of a dimension's scramblings, from one that is well mixed already.
-FN uint seed_of_x(uint seed) { return (seed ^ 0xa511e9b3u) * 0x9e3779b1u; }
-FN uint seed_of_y(uint seed) { return (seed ^ 0x63d83595u) * 0x85ebca6bu; }
+// Seeds of scramblings that are independent of each other, down to the lowest bit, which decides over the highest of a number;
+// from one seed that is well mixed already.
+FN uint scramble_seed(uint seed, uint which) {
+    uint mixed = (seed ^ (0xa511e9b3u + which * 0xbea24c72u)) * 0x9e3779b1u;
+    return mixed ^ (mixed >> 15u);
+}
+
+// The numbers of a point, bit-reversed and not yet scrambled, in the way `way` of scrambling them.
+FN vec2 scrambled_point(uvec2 reversed, uint seed, uint way) {
+    uint x = scramble_reversed(reversed.x, scramble_seed(seed, 2u * way));
+    uint y = scramble_reversed(reversed.y, scramble_seed(seed, 2u * way + 1u));
+    uvec2 bits = bitfieldReverse(uvec2(x, y));
+    return vec2(unit_float(bits.x), unit_float(bits.y));
+}
+
+FN vec2 independent_2d(IN(Sampler) s, uint dimension) {
+    uvec3 bits = pcg3d(uvec3(s.key, s.index, dimension));
+    return vec2(unit_float(bits.x), unit_float(bits.y));
+}
 
 // A number by its dimension, for those who skip what they do not need: a dimension keeps its meaning in every sample.
 FN float sample_1d_at(IN(Sampler) s, uint dimension) {
-    if (s.kind == SAMPLER_INDEPENDENT) return unit_float(pcg3d(uvec3(s.key, s.index, dimension)).x);
+    if (s.kind == SAMPLER_INDEPENDENT) return independent_2d(s, dimension).x;
     uint seed = hash_combine(s.key, dimension);
     uint shuffled = bitfieldReverse(scramble_reversed(s.reversed, seed));
-    return unit_float(bitfieldReverse(scramble_reversed(shuffled, seed_of_x(seed))));
+    return unit_float(bitfieldReverse(scramble_reversed(shuffled, scramble_seed(seed, 0u))));
 }
 
 FN vec2 sample_2d_at(IN(Sampler) s, uint dimension) {
-    if (s.kind == SAMPLER_INDEPENDENT) {
-        uvec3 bits = pcg3d(uvec3(s.key, s.index, dimension));
-        return vec2(unit_float(bits.x), unit_float(bits.y));
-    }
+    if (s.kind == SAMPLER_INDEPENDENT) return independent_2d(s, dimension);
     uint seed = hash_combine(s.key, dimension);
     uint shuffled = bitfieldReverse(scramble_reversed(s.reversed, seed));
-    uint x = bitfieldReverse(scramble_reversed(shuffled, seed_of_x(seed)));
-    uint y = bitfieldReverse(scramble_reversed(sobol_second_reversed(shuffled), seed_of_y(seed)));
-    return vec2(unit_float(x), unit_float(y));
+    return scrambled_point(uvec2(shuffled, sobol_second_reversed(shuffled)), seed, 0u);
+}
+
+// Two pairs of numbers, (x, y) and (z, w), for integrands that are sums of a function of the one and a function of the other:
+// they are one point, scrambled in two ways, so that each pair is stratified, but not both together. Two points of their own
+// would serve such integrands no better. Takes the dimensions of two pairs.
+FN vec4 sample_2d_2d_at(IN(Sampler) s, uint dimension) {
+    vec2 a;
+    vec2 b;
+    if (s.kind == SAMPLER_INDEPENDENT) {
+        a = independent_2d(s, dimension);
+        b = independent_2d(s, dimension + 2u);
+    } else {
+        uint seed = hash_combine(s.key, dimension);
+        uint shuffled = bitfieldReverse(scramble_reversed(s.reversed, seed));
+        uvec2 reversed = uvec2(shuffled, sobol_second_reversed(shuffled));
+        a = scrambled_point(reversed, seed, 0u);
+        b = scrambled_point(reversed, seed, 1u);
+    }
+    return vec4(a.x, a.y, b.x, b.y);
 }
 
 // The next numbers.

@@ -15,6 +15,9 @@ FN float power_heuristic(float a, float b) {
     return 1.0f / (1.0f + r * r);
 }
 
+// power_heuristic(a, b) / a.
+FN float power_heuristic_over_pdf(float a, float b) { return 1.0f / (a + b * (b / a)); }
+
 // ---- Numbers ---------------------------------------------------------------------------------------------------------
 
 // x in [0, 1) with density proportional to (1 - x) a + x b; a, b >= 0, not both zero.
@@ -61,29 +64,26 @@ FN float pdf_exponential(float x, float a) { return a * exp_of(-a * x); }
 FN vec2 sample_concentric_disk(vec2 u) {
     float x = 2.0f * u.x - 1.0f;
     float y = 2.0f * u.y - 1.0f;
-    bool wide = abs(x) > abs(y);
-    float radius = wide ? x : y;
-    if (radius == 0.0f) return vec2(0.0f, 0.0f);
-    float angle = PI_OVER_4 * ((wide ? y : x) / radius);
+    bool high = abs(y) >= abs(x);
+    swap_if(high, x, y);
+    if (x == 0.0f) return vec2(0.0f, 0.0f);
     float s;
     float c;
-    sin_cos(angle, s, c);
-    return wide ? vec2(radius * c, radius * s) : vec2(radius * s, radius * c);
+    sin_cos_of_octant(PI_OVER_4 * (y / x), s, c);
+    s = x * s;
+    c = x * c;
+    swap_if(high, c, s);
+    return vec2(c, s);
 }
 FN float pdf_concentric_disk() { return INV_PI; }
 
 // Uniform barycentric coordinates (b0, b1, b2) with little distortion (Heitz 2019, "A Low-Distortion Map Between
 // Triangle and Square"). Density 1 / area of the triangle.
 FN vec3 sample_uniform_triangle(vec2 u) {
-    float b0;
-    float b1;
-    if (u.x < u.y) {
-        b0 = 0.5f * u.x;
-        b1 = u.y - b0;
-    } else {
-        b1 = 0.5f * u.y;
-        b0 = u.x - b1;
-    }
+    // The smaller number is halved, exactly, and that half taken off both.
+    float half_of_smaller = 0.5f * min(u.x, u.y);
+    float b0 = u.x - half_of_smaller;
+    float b1 = u.y - half_of_smaller;
     return vec3(b0, b1, max(0.0f, 1.0f - b0 - b1));
 }
 

@@ -26,7 +26,7 @@ FN bool shape_sample_from_area(vec3 ref_p, float pdf_area, INOUT(ShapeSample) s)
     float d2 = length_squared(to_light);
     if (!(d2 > 0.0f) || !is_finite(d2)) return false;
     s.distance = sqrt(d2);
-    s.wi = to_light / s.distance;
+    s.wi = to_light * (1.0f / s.distance);
     float cosine = dot3(s.ng, s.wi);
     if (cosine == 0.0f) return false;
     s.pdf = pdf_of_area(pdf_area, d2, cosine);
@@ -56,16 +56,16 @@ FN float spherical_triangle_area(vec3 a, vec3 b, vec3 c) {
 
 // Solid angle in which to sample the triangle from p, or 0 where it is to be sampled by area.
 FN float triangle_sampled_solid_angle(IN(LightRecord) light, vec3 ref_p, OUT(vec3) a, OUT(vec3) b, OUT(vec3) c) {
+    // From afar it is nearly the area, foreshortened, over the squared distance: area height / d^3.
+    vec3 centre = (vec3(light.v0) + vec3(light.v1) + vec3(light.v2)) * (1.0f / 3.0f) - ref_p;
+    float d2 = length_squared(centre);
+    if (d2 > 4.0f * light.v1.w * light.v1.w) {
+        float volume = light.v0.w * dot3(centre, vec3(light.normal));
+        if (volume * volume < SPHERICAL_TRIANGLE_MIN * SPHERICAL_TRIANGLE_MIN * d2 * d2 * d2) return 0.0f;
+    }
     a = vec3(light.v0) - ref_p;
     b = vec3(light.v1) - ref_p;
     c = vec3(light.v2) - ref_p;
-    // From afar it is nearly the area, foreshortened, over the squared distance: volume / (2 d^3).
-    vec3 centre = (a + b + c) * (1.0f / 3.0f);
-    float d2 = length_squared(centre);
-    if (d2 > 4.0f * light.v1.w * light.v1.w) {
-        float volume = dot3(a, cross3(b - a, c - a));
-        if (0.25f * volume * volume < SPHERICAL_TRIANGLE_MIN * SPHERICAL_TRIANGLE_MIN * d2 * d2 * d2) return 0.0f;
-    }
     float a2 = length_squared(a);
     float b2 = length_squared(b);
     float c2 = length_squared(c);
@@ -145,7 +145,7 @@ FN AreaSample sample_triangle_area(IN(LightRecord) light, vec2 u) {
     s.error = gamma_bound(7.0f) * (abs(barycentric.x * p0) + abs(barycentric.y * p1) + abs(barycentric.z * p2));
     s.ng = triangle_light_normal(light, barycentric);
     s.uv = triangle_light_uv(light, barycentric);
-    s.pdf = 1.0f / light.v0.w;
+    s.pdf = light.v2.w;
     return s;
 }
 
@@ -178,7 +178,7 @@ FN bool sample_triangle_light(IN(LightRecord) light, vec3 ref_p, vec2 u, OUT(Sha
         barycentric = sample_uniform_triangle(u);
         s.position = p0 + barycentric.y * e1 + barycentric.z * e2;
         s.ng = triangle_light_normal(light, barycentric);
-        if (!shape_sample_from_area(ref_p, 1.0f / light.v0.w, s)) return false;
+        if (!shape_sample_from_area(ref_p, light.v2.w, s)) return false;
     }
     s.uv = triangle_light_uv(light, barycentric);
     return true;
@@ -190,7 +190,7 @@ FN float pdf_triangle_light(IN(LightRecord) light, vec3 ref_p, vec3 position, ve
     vec3 c;
     float solid_angle = triangle_sampled_solid_angle(light, ref_p, a, b, c);
     if (solid_angle > 0.0f) return 1.0f / solid_angle;
-    return pdf_of_area(1.0f / light.v0.w, length_squared(position - ref_p), dot3(ng, wi));
+    return pdf_of_area(light.v2.w, length_squared(position - ref_p), dot3(ng, wi));
 }
 
 // ---- Quadrics --------------------------------------------------------------------------------------------------------

@@ -95,7 +95,7 @@ kernel::LightRecord triangle_light(const glm::vec3& p0, const glm::vec3& p1, con
     light.v0 = {p0, float(0.5 * length)};
     light.normal = {normal, smooth ? 1.0f : 0.0f};
     light.v1 = {p1, float(radius)};
-    light.v2 = {p2, 0.0f};
+    light.v2 = {p2, 1.0f / light.v0.w};
     return light;
 }
 
