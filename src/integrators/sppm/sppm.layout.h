@@ -9,7 +9,7 @@ struct SppmHit {
     uvec4 direction;  // floats' bits; w: geometry
     vec4 throughput;  // rgb; w: weight of the pixel filter
     vec4 radiance;    // rgb: found on the way, and direct light at the hit point; w: radius of the first pass
-    uvec4 more;       // primitive, least radius (bits)
+    uvec4 more;  // primitive, least radius (bits), medium it was reached through, its number on the eye path (from 1)
 };
 
 struct SppmPass {
