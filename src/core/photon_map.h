@@ -30,7 +30,8 @@ struct PhotonMapCapabilities {
     bool fixed_order = false;    // hands photons over in an order that depends on nothing but the photons and the seed
     bool needs_queries = false;  // build() reads the queries: a structure over hit points
     bool sums_only = false;  // hands consumers sums, not photons: gather_value and gather_sums (core/kernel/gather.h)
-    bool k_nearest = false;  // can also find the k nearest
+    // Stops early where a consumer wants the nearest only (core/kernel/gather.h: GATHER_SHRINKS).
+    bool k_nearest = false;
     bool int64_atomics = false, boxes = false;  // what it needs of the device (DeviceFeature)
 };
 

@@ -21,8 +21,11 @@ class Bvh : public PhotonMap {
  public:
     BvhParams params;
     PhotonMapCapabilities capabilities() const override {
-        // A driver walks boxes in an order of its own.
-        return {.exact = true, .fixed_order = params.ray_query == kOff, .boxes = params.ray_query == kOn};
+        // A driver walks boxes in an order of its own, to their end.
+        return {.exact = true,
+                .fixed_order = params.ray_query == kOff,
+                .k_nearest = params.ray_query != kOn,
+                .boxes = params.ray_query == kOn};
     }
     ConstructionTraffic traffic() const override { return {.accesses = 1, .sorted_bits = 32}; }  // the photon
 

@@ -1,5 +1,6 @@
 // Walks the tree depth first, without a stack: from node i of a level to its first child 4i, or where its box is out of range or its
-// photons are done, to the next sibling, or up.
+// photons are done, to the next sibling, or up. Children come in the order of node ^ first, where `first` is the path to a leaf: for
+// consumers that shrink one near the query, so that its neighbours are looked at before the rest.
 #include "core/kernel/gather.h"
 #include "accel/bvh/bvh.layout.h"
 
@@ -8,10 +9,31 @@ BUFFER_RO(2, TreeBox, boxes)
 BUFFER_RO(3, uvec4, places)
 BUFFER_RO(4, uvec4, fluxes)
 
-// No photon in a box that fails this is in range: each step of in_range keeps order, whatever it rounds.
-FN bool box_in_range(IN(TreeBox) box, vec3 q, float radius) {
+// No photon of the box is nearer: each step of in_range keeps order, whatever it rounds.
+FN float box_distance_squared(IN(TreeBox) box, vec3 q) {
     vec3 d = max(max(vec3(box.low) - q, q - vec3(box.high)), vec3(0.0f));
-    return d.x * d.x + d.y * d.y + d.z * d.z <= max(radius * radius, SMALLEST_RADIUS_SQUARED);
+    return d.x * d.x + d.y * d.y + d.z * d.z;
+}
+
+// A leaf near q: from the root on, the nearest child.
+FN uint leaf_near(vec3 q, uint root) {
+    uint node = 0u;
+    uint level = root;
+    for (; level > 0u; --level) {
+        uvec4 below = tree[0].levels[level - 1u];
+        uint child = 4u * node;
+        uint end = min(child + 4u, below.y);
+        node = child;
+        float least = 3.4e38f;
+        for (; child < end; ++child) {
+            float d2 = box_distance_squared(boxes[below.x + child], q);
+            if (d2 < least) {
+                least = d2;
+                node = child;
+            }
+        }
+    }
+    return node;
 }
 
 KERNEL(bvh) {
@@ -21,15 +43,21 @@ KERNEL(bvh) {
     uvec4 sizes = tree[0].sizes;
     uint root = sizes.z - 1u;
     uint level = root;
-    uint node = 0u;
+    uint visit = 0u;  // node ^ (first >> 2 level)
+    float limit = max(q.w * q.w, SMALLEST_RADIUS_SQUARED);
+    uint first = 0u;
+#ifdef GATHER_SHRINKS
+    if (sizes.x > 0u) first = leaf_near(vec3(q), root);
+#endif
     bool finished = sizes.x == 0u;
     // Every node once, at most.
     for (uint steps = 0u; !finished && steps <= 2u * sizes.x + 64u; ++steps) {
         uvec4 of_level = tree[0].levels[level];
-        if (node < of_level.y && box_in_range(boxes[of_level.x + node], vec3(q), q.w)) {
+        uint node = visit ^ (first >> (2u * level));
+        if (node < of_level.y && box_distance_squared(boxes[of_level.x + node], vec3(q)) <= limit) {
             if (level > 0u) {
                 level -= 1u;
-                node = 4u * node;
+                visit = 4u * visit;
                 continue;
             }
             uint end = min((node + 1u) * sizes.y, sizes.x);
@@ -44,13 +72,16 @@ KERNEL(bvh) {
                 gather_add(gathered, index, photon, d2, 1.0f);
             }
             if (i != end) REPORT_UNFINISHED();
+#ifdef GATHER_SHRINKS
+            limit = gather_limit(gathered);
+#endif
         }
-        while (level < root && (node & 3u) == 3u) {
-            node = node >> 2u;
+        while (level < root && (visit & 3u) == 3u) {
+            visit = visit >> 2u;
             level += 1u;
         }
         if (level >= root) finished = true;
-        node += 1u;
+        visit += 1u;
     }
     if (!finished) REPORT_UNFINISHED();
     gather_end(gathered, index);

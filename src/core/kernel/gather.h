@@ -11,6 +11,11 @@
 //     FN Gathered gather_sums(uint query, vec4 sums)                                        what these sums have gathered
 // (xyz in units of power, w a count), and traces no rays. A photon stands for `weight` photons, itself among them; 1 where the structure is exact. Bindings 0 to 15 are the
 // structure's, 16 and up the consumer's.
+//
+// A consumer that wants the nearest photons only has, ahead of this file, `#define GATHER_SHRINKS`, and defines
+//     FN float gather_limit(IN(Gathered) g)                        squared distance beyond which it wants no more photons: never grows
+// A structure that can stop early asks `#ifdef GATHER_SHRINKS` and leaves out what is farther (not what is as far); others hand over all
+// in range, and the consumer ignores what it does not want. core/kernel/nearest.h is such a consumer's heap.
 #ifndef LAMPYRIS_KERNEL_GATHER
 #define LAMPYRIS_KERNEL_GATHER
 

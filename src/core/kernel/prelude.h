@@ -22,6 +22,9 @@
 #define BUFFER_RO(binding_, T, name) const T* __restrict name = static_cast<const T*>(kernel_buffers_[binding_]);
 #define BUFFER_RW(binding_, T, name) T* __restrict name = static_cast<T*>(kernel_buffers_[binding_]);
 #define HAS(effect) ((kEffects & (effect)) != 0u)
+// An array of the invocation's own that several functions use; what it holds is indeterminate at first. GLSL copies a struct with an
+// array, element by element, at each call that it is given to.
+#define PRIVATE(T, name, count) T name[count] = {};
 // The function that runs once per index; one per kernel file.
 #define KERNEL(name) inline void kernel_main(uint index)
 // Atomics return the old value. ATOMIC_STORE_U32 is for words that several invocations race for, in which any of them may win.
@@ -52,6 +55,7 @@
 #define BUFFER_RW(binding_, T, name) \
     layout(std430, set = 1, binding = binding_) restrict buffer name##Block { T name[]; };
 #define HAS(effect) ((kEffects & (effect)) != 0u)
+#define PRIVATE(T, name, count) T name[count];
 #define KERNEL(name) void kernel_main(uint index)
 #define ATOMIC_ADD_U32(place, value) atomicAdd(place, value)
 #define ATOMIC_OR_U32(place, value) atomicOr(place, value)
