@@ -43,9 +43,10 @@ TEST_P(PhotonMapIntegrator, FillsAClosedBox) {
 }
 
 // A sphere of albedo 1/2 around a point light of intensity pi shows 1. A ball about one of its points cuts out a cap of area pi r^2
-// exactly: nothing is allowed for the radius.
+// exactly: nothing is allowed for the radius, nor for the nearest photons, which are unbiased.
 TEST_P(PhotonMapIntegrator, FillsASphere) {
-    for (const char* options : {"radius=0.05,direct=nee", "radius=0.05,direct=photons", "radius=0"}) {
+    for (const char* options : {"radius=0.05,direct=nee", "radius=0.05,direct=photons", "radius=0", "nearest=50",
+                                "radius=0.1,nearest=20,direct=photons", "radius=0.1,nearest=100"}) {
         SCOPED_TRACE(options);
         const std::string integrator = fmt::format("photon_map:maxdepth=64,photons=40000,{}", options);
         const Mean mean = mean_of_runs("analytic/sphere-point.pbrt", settings_of(GetParam(), integrator, 4, 16), 8);
@@ -57,13 +58,16 @@ TEST_P(PhotonMapIntegrator, FillsASphere) {
 // Backends follow the same paths and sum in the same order; a photon that takes another way at an edge changes the hit points around
 // it: the share of docs/determinism.md.
 TEST_P(PhotonMapIntegrator, GivesTheSameImageOnEveryBackend) {
-    const std::string integrator = "photon_map:maxdepth=12,photons=20000";
-    const std::string file = kScenes + "reference/sds-lamp.pbrt";
-    const Rendered cpu = render_file(file, settings_of("cpu", integrator, 2, 64));
-    const Rendered here = render_file(file, settings_of(GetParam(), integrator, 2, 64));
-    size_t equal = 0;
-    for (size_t i = 0; i < cpu.pixels.size(); ++i) equal += cpu.pixels[i].sum == here.pixels[i].sum;
-    EXPECT_GE(double(equal), 0.999 * double(cpu.pixels.size()));
+    for (const char* integrator :
+         {"photon_map:maxdepth=12,photons=20000", "photon_map:maxdepth=12,photons=20000,nearest=50"}) {
+        SCOPED_TRACE(integrator);
+        const std::string file = kScenes + "reference/sds-lamp.pbrt";
+        const Rendered cpu = render_file(file, settings_of("cpu", integrator, 2, 64));
+        const Rendered here = render_file(file, settings_of(GetParam(), integrator, 2, 64));
+        size_t equal = 0;
+        for (size_t i = 0; i < cpu.pixels.size(); ++i) equal += cpu.pixels[i].sum == here.pixels[i].sum;
+        EXPECT_GE(double(equal), 0.999 * double(cpu.pixels.size()));
+    }
 }
 
 // The mean of the picture against path tracing by pbrt (sds-point: against pbrt's sppm). A radius of a fiftieth of the room blurs
@@ -76,6 +80,8 @@ struct Case {
 class PhotonMapIntegratorReference : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(Scenes, PhotonMapIntegratorReference,
                          testing::Values(Case{"diffuse", "", 0.01}, Case{"diffuse", ",direct=photons", 0.01},
+                                         Case{"diffuse", ",nearest=10", 0.01},
+                                         Case{"diffuse", ",nearest=20,direct=photons", 0.01},
                                          Case{"dielectric-smooth", "", 0.01}, Case{"coated-diffuse", "", 0.01},
                                          Case{"sds-point", "", 0.02}),
                          [](const auto& info) {
@@ -110,6 +116,42 @@ TEST(PhotonMapIntegratorDeterminism, ThreadsChangeNothing) {
         s.threads = 7;
         const Rendered many = render_file(kScenes + "reference/sds-lamp.pbrt", s);
         EXPECT_EQ(one.image.pixels, many.image.pixels);
+    }
+}
+
+// The nearest photons are the same set, summed in the same order: the same image, to the bit, with every structure that finds them, on
+// any number of threads.
+TEST(PhotonMapIntegratorNearest, StructuresGiveTheSameImage) {
+    RenderSettings s = settings_of("cpu", "photon_map:maxdepth=12,photons=5000,nearest=30", 2, 32);
+    s.photon_map = "brute_force";
+    const Rendered truth = render_file(kScenes + "reference/sds-lamp.pbrt", s);
+    EXPECT_GT(truth.mean_luminance(), 0.0);
+    int compared = 0;
+    for (const std::string& name : photon_maps().names()) {
+        const PhotonMapCapabilities can = create_photon_map(name)->capabilities();
+        if (!can.exact || can.sums_only) continue;
+        SCOPED_TRACE(name);
+        s.photon_map = name;
+        s.threads = unsigned(1 + compared % 3);
+        EXPECT_EQ(render_file(kScenes + "reference/sds-lamp.pbrt", s).image.pixels, truth.image.pixels);
+        ++compared;
+    }
+    EXPECT_GT(compared, 4);
+}
+
+TEST(PhotonMapIntegratorNearest, OtherStructuresAreBadInput) {
+    for (const std::string map : {"splat", "stochastic_hash"}) {
+        SCOPED_TRACE(map);
+        RenderSettings s = settings_of("cpu", "photon_map:nearest=50,photons=100", 1, 8);
+        s.photon_map = map;
+        try {
+            render_file(kScenes + "reference/diffuse.pbrt", s);
+            FAIL();
+        } catch (const InputError& error) {
+            const std::string text = error.what();
+            for (const char* named : {map.c_str(), "bvh", "sorted_grid", "brute_force"})
+                EXPECT_NE(text.find(named), std::string::npos) << text;
+        }
     }
 }
 

@@ -49,12 +49,14 @@ FN HitPoint hit_point(IN(SppmHit) h) {
     return p;
 }
 
+// Photons on the back of a thin wall are none of this side's. `cosine`: of the direction they come from with p.ng.
+FN bool hit_point_sees(IN(HitPoint) p, float cosine) { return p.both_sides != 0u || cosine > 0.0f; }
+
 // The BSDF times the photon's power; w: the photons that it stands for. Nothing where it is none of this side's.
 FN vec4 hit_point_reflects(IN(HitPoint) p, IN(PhotonRecord) photon, float weight) {
     vec3 incident = -photon_direction(photon);
     float cosine = dot3(incident, p.ng);
-    // Photons on the back of a thin wall are none of this side's.
-    if (p.both_sides == 0u && !(cosine > 0.0f)) return vec4(0.0f);
+    if (!hit_point_sees(p, cosine)) return vec4(0.0f);
     vec3 wi = to_local(p.frame, incident);
     vec3 f = bsdf_eval(p.bsdf, p.wo, wi, TRANSPORT_RADIANCE);
     // Photons are counted on the geometric surface, the BSDF wants the shading normal's cosine (clamped where grazing).

@@ -1,0 +1,88 @@
+#include "integrators/photon_map/stored_photons.h"
+
+#include "integrators/sppm/photon_host.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+namespace lampyris {
+
+StoredPhotons::StoredPhotons(RenderSession& session, uint32_t keep, uint32_t paths, uint32_t bounces, uint32_t stream,
+                             const PhotonConsumer& consumer)
+    : session_(session),
+      paths_(paths),
+      kernel_(session.device.compile(sppm_files::kPhotons, session.scene.effects.mask())),
+      map_(create_photon_map(session.photon_map)),
+      consumer_(consumer) {
+    map_->open(session.device);
+    map_->prepare(consumer_);
+    const glm::vec4 bounds = session.scene.record.bounds;
+    // A little more than the sphere: what lies on it is in the scene.
+    const glm::vec3 extent(bounds.w * 1.001f);
+    pass_.low = glm::vec4(glm::vec3(bounds) - extent, 0.0f);
+    pass_.high = glm::vec4(glm::vec3(bounds) + extent, 0.0f);
+    pass_.photons = {0, 0, stream, session.seed};
+    pass_.counts = {paths, session.sampler, 1, bounces};
+    pass_.keep.x = keep;
+}
+
+// All photons are kept: where they are more than there is room for, they are traced again into what they need. A path is a function
+// of its number and the seed, so that they are as many.
+void StoredPhotons::trace(const BufferHandle& parameters) {
+    const BufferHandle arguments = session_.device.create_buffer(sizeof pass_, "pass");
+    const BufferHandle counters = session_.device.create_buffer(sizeof(SppmCounters), "counters");
+    uint64_t capacity = std::min<uint64_t>(std::max<uint64_t>(4 * uint64_t(paths_), 65536), 1u << 30);
+    for (;;) {
+        store_.reset();
+        store_ = session_.device.create_buffer(capacity * sizeof(kernel::PhotonRecord), "photons");
+        pass_.photons.y = uint32_t(capacity);
+        arguments->upload(&pass_, sizeof pass_);
+        counters->fill_zero();
+        run_in_phase(session_, sppm_files::kPhotons, *kernel_, "photon_tracing",
+                     std::array{arguments, parameters, store_, counters}, paths_);
+        const SppmCounters found = download_sppm_counters(*counters);
+        stored_ = found[kernel::SPPM_STORED];
+        session_.photons.rays += found[kernel::SPPM_RAYS];
+        if (stored_ <= capacity) break;
+        capacity = stored_;
+    }
+    session_.photons.emitted += paths_;
+    session_.photons.stored += stored_;
+}
+
+void StoredPhotons::gather(const BufferHandle& queries, uint32_t count, float radius, uint64_t pass) {
+    if (stored_ == 0) return;
+    const PhotonMapCapabilities can = map_->capabilities();
+    // Structures over the hit points are new with these, and those that select photons by chance in each pass: their noise averages
+    // out where the choice is new, too.
+    if (!built_ || can.needs_queries || (!can.exact && built_for_ != pass)) build(queries, count, radius, pass);
+    map_->gather(consumer_, queries, 0, count);
+}
+
+void StoredPhotons::build(const BufferHandle& queries, uint32_t count, float radius, uint64_t pass) {
+    PhotonSet set;
+    set.photons = store_;
+    set.count = stored_;
+    set.queries = queries;
+    set.query_count = count;
+    set.radius = radius;
+    set.low = glm::vec3(pass_.low);
+    set.high = glm::vec3(pass_.high);
+    set.seed = session_.seed;
+    set.pass = map_->capabilities().exact ? 0 : uint32_t(pass);
+    set.mean_power = std::bit_cast<float>(session_.scene.record.lights.w) / float(paths_);
+    map_->build(set);
+    built_ = true;
+    built_for_ = pass;
+}
+
+void StoredPhotons::finish() const {
+    add_map_statistics(session_, *map_);
+    if (!built_) return;
+    PhotonStatistics& photons = session_.photons;
+    if (const auto load = map_->bucket_load())
+        photons.bucket_load_mean = load->mean, photons.bucket_load_max = load->max;
+}
+
+}  // namespace lampyris
