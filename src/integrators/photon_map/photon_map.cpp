@@ -1,4 +1,5 @@
-// Photon mapping as Jensen (1996, 2001) has it: photons are traced once; passes of eye paths look them up.
+// Photon mapping as Jensen (1996, 2001) has it: photons are traced once; passes of eye paths look them up, at their hit points or at
+// the ends of rays from there (final gathering).
 #include "core/error.h"
 #include "core/integrator.h"
 #include "integrators/photon_map/photon_map.params.h"
@@ -18,11 +19,17 @@ namespace lampyris {
 namespace {
 
 constexpr const char* kNearest = "integrators/photon_map/photon_map_nearest.consumer.h";
+constexpr const char* kRays = "integrators/photon_map/photon_map_rays.kernel.h";
+constexpr const char* kAdd = "integrators/photon_map/photon_map_add.kernel.h";
 
 // Photons within a radius of 0, if they lay evenly on the scene's bounding sphere: so many, or so many times `nearest`.
 constexpr double kExpectedPhotons = 50.0, kExpectedOfNearest = 4.0;
 
-// Points where photons are looked up, one a pixel: hit points of eye paths.
+// What has surfaces that are followed, so that there may be caustics.
+constexpr uint32_t kSpecularEffects =
+    kernel::EFFECT_CONDUCTOR | kernel::EFFECT_DIELECTRIC | kernel::EFFECT_THIN_DIELECTRIC | kernel::EFFECT_COAT;
+
+// Points where photons are looked up, one a pixel: hit points of eye paths, or ends of gather rays.
 struct Lookups {
     Lookups(Device& device, uint32_t pixels)
         : hits(device.create_buffer(pixels * sizeof(kernel::SppmHit), "hit points")),
@@ -54,9 +61,18 @@ class PhotonMapRendering {
         biases_ = device_.create_buffer(pixels_ * sizeof(glm::vec4), "bias of gathered flux");
         film_bias_ = device_.create_buffer(pixels_ * sizeof(kernel::FilmBias), "bias of the film");
         film_bias_->fill_zero();
-        const uint32_t keep =
-            params.direct == kernel::SPPM_DIRECT_PHOTONS ? kernel::SPPM_KEEP_ALL : kernel::SPPM_KEEP_BOUNCED;
-        map_.emplace(session, keep, uint32_t(params.photons), bounces(), 0, consumer(hits_));
+        if (params.gather == 0) {
+            const uint32_t keep =
+                params.direct == kernel::SPPM_DIRECT_PHOTONS ? kernel::SPPM_KEEP_ALL : kernel::SPPM_KEEP_BOUNCED;
+            map_.emplace(session, keep, uint32_t(params.photons), bounces(), 0, consumer(hits_));
+            return;
+        }
+        rays_ = device_.compile(kRays, effects);
+        add_ = device_.compile(kAdd, 0);
+        ends_.emplace(device_, pixels_);
+        map_.emplace(session, kernel::SPPM_KEEP_ALL, uint32_t(params.photons), bounces(), 0, consumer(*ends_));
+        if (effects & kSpecularEffects)
+            caustics_.emplace(session, kernel::SPPM_KEEP_CAUSTIC, caustic_paths(), bounces(), 1, consumer(hits_));
     }
 
     void render() {
@@ -70,14 +86,23 @@ class PhotonMapRendering {
 
  private:
     uint32_t bounces() const { return uint32_t(params_.maxdepth) + 1; }
+    uint32_t caustic_paths() const {
+        return uint32_t(params_.causticphotons > 0 ? params_.causticphotons : params_.photons);
+    }
+    uint32_t gather_rays() const { return uint32_t(params_.gather); }
+
     void check() const {
         // Keys tell the photons of a path apart.
-        const uint64_t keys = uint64_t(params_.photons) * bounces();
+        const uint64_t keys = uint64_t(std::max(uint32_t(params_.photons), caustic_paths())) * bounces();
         if (keys > std::numeric_limits<uint32_t>::max())
             throw InputError(
                 fmt::format("error: photons * (maxdepth + 1) = {} is more than 2^32; take fewer photons, or a smaller "
                             "maxdepth",
                             keys));
+        if (params_.gather > 0 && params_.direct == kernel::SPPM_DIRECT_PHOTONS)
+            throw InputError(
+                "error: final gathering (gather above 0) finds direct light by sampling lights; direct=photons is for "
+                "the map shown directly");
         if (params_.nearest > 0 && !finds_nearest(*create_photon_map(session_.photon_map))) {
             std::string others;
             for (const std::string& name : photon_maps().names())
@@ -102,6 +127,7 @@ class PhotonMapRendering {
     void trace_photons() {
         set_radii(params_.radius);
         map_->trace(map_params_);
+        if (caustics_) caustics_->trace(map_params_);
         if (params_.radius > 0.0f) return;
         // pi r^2 of 4 pi R^2 holds so many of all.
         const double expected = std::max(kExpectedPhotons, kExpectedOfNearest * params_.nearest);
@@ -109,7 +135,7 @@ class PhotonMapRendering {
         set_radii(float(2.0 * double(session_.scene.record.bounds.w) * std::sqrt(share)));
     }
 
-    // Those of the kernels, which are sppm's.
+    // Those of the kernels, which are sppm's: of look-ups at the hit points, and in the map.
     void set_radii(float radius) {
         SppmParams sppm{};
         sppm.radius = map_radius_ = radius;
@@ -121,6 +147,9 @@ class PhotonMapRendering {
         sppm.direct = params_.direct;
         sppm.glossy = params_.glossy;
         map_params_ = argument_buffer(device_, sppm, "parameters");
+        if (params_.gather > 0 && params_.causticradius > 0.0f) sppm.radius = params_.causticradius;
+        hit_radius_ = sppm.radius;
+        hit_params_ = argument_buffer(device_, sppm, "parameters");
     }
 
     void one_pass(uint64_t pass) {
@@ -131,12 +160,30 @@ class PhotonMapRendering {
         pass_buffer_->upload(&record, sizeof record);
         set_window(uint32_t(pass));
         run(sppm_files::kEye, *eye_, "eye_pass",
-            std::array{window_, map_params_, session_.film.buffer(), hits_.hits, hits_.queries});
-        give_radii(hits_, map_params_, "eye_pass");
-        map_->gather(hits_.queries, pixels_, map_radius_, pass);
+            std::array{window_, hit_params_, session_.film.buffer(), hits_.hits, hits_.queries});
+        give_radii(hits_, hit_params_, "eye_pass");
+        if (params_.gather == 0) {
+            map_->gather(hits_.queries, pixels_, hit_radius_, pass);
+        } else {
+            if (caustics_) caustics_->gather(hits_.queries, pixels_, hit_radius_, pass);
+            for (uint32_t ray = 0; ray < gather_rays(); ++ray) one_gather_ray(pass, ray);
+        }
+        set_window(uint32_t(pass));
         run(sppm_files::kResolve, *resolve_, "resolve",
-            std::array{window_, map_params_, session_.film.buffer(), pass_buffer_, hits_.hits, hits_.queries,
+            std::array{window_, hit_params_, session_.film.buffer(), pass_buffer_, hits_.hits, hits_.queries,
                        hits_.gathered, statistics_, biases_, film_bias_});
+    }
+
+    // Of every pixel's hit point: as many look-ups at once as there are pixels, whatever `gather` is.
+    void one_gather_ray(uint64_t pass, uint32_t ray) {
+        set_window(uint32_t(pass) * gather_rays() + ray);
+        run(kRays, *rays_, "final_gather",
+            std::array{window_, map_params_, session_.film.buffer(), hits_.hits, hits_.queries, ends_->hits,
+                       ends_->queries});
+        give_radii(*ends_, map_params_, "final_gather");
+        map_->gather(ends_->queries, pixels_, map_radius_, pass);
+        run(kAdd, *add_, "final_gather",
+            std::array{own_params_, ends_->hits, ends_->queries, ends_->gathered, hits_.hits});
     }
 
     void set_window(uint32_t sample) {
@@ -158,6 +205,7 @@ class PhotonMapRendering {
 
     void finish() {
         map_->finish();
+        if (caustics_) caustics_->finish();
         session_.photons.map_parameters = show_photon_map(parse_plugin_choice(session_.photon_map).name, map_->map());
         note_radii(session_, *hits_.queries, *hits_.hits, pixels_);
     }
@@ -166,11 +214,13 @@ class PhotonMapRendering {
     Device& device_;
     const PhotonMapParams params_;
     const uint32_t pixels_;
-    float map_radius_ = 0.0f;
+    float map_radius_ = 0.0f, hit_radius_ = 0.0f;
     Lookups hits_;
-    KernelHandle eye_, radius_, resolve_;
-    BufferHandle window_, own_params_, map_params_, pass_buffer_, counters_, statistics_, biases_, film_bias_;
-    std::optional<StoredPhotons> map_;
+    std::optional<Lookups> ends_;
+    KernelHandle eye_, radius_, resolve_, rays_, add_;
+    BufferHandle window_, own_params_, map_params_, hit_params_, pass_buffer_, counters_, statistics_, biases_,
+        film_bias_;
+    std::optional<StoredPhotons> map_, caustics_;
 };
 
 class PhotonMapIntegrator : public Integrator {
@@ -180,8 +230,9 @@ class PhotonMapIntegrator : public Integrator {
     void render(RenderSession& session) override { PhotonMapRendering(session, params).render(); }
 };
 
-REGISTER_INTEGRATOR(PhotonMapIntegrator, PHOTON_MAP_PARAMS, "photon_map",
-                    "Photon mapping: photons traced once, which passes of eye paths look up; k nearest.")
+REGISTER_INTEGRATOR(
+    PhotonMapIntegrator, PHOTON_MAP_PARAMS, "photon_map",
+    "Photon mapping: photons traced once, which passes of eye paths look up; k nearest, final gathering.")
 
 }  // namespace
 }  // namespace lampyris

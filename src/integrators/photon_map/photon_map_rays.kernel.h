@@ -1,0 +1,56 @@
+// Final gathering: a ray from each hit point, over (nearly) specular surfaces to the next one, where the map is looked up.
+// clang-format off
+#define KERNEL_CPU_VARIANTS kAllEffects, kTexturedEffects, kGlassEffects
+// clang-format on
+#include "core/kernel/scene.h"
+
+#include "integrators/sppm/eye_path.functions.h"
+#include "core/kernel/photon.h"
+#include "integrators/sppm/hit_point.functions.h"
+
+BUFFER_RO(0, FilmWindow,
+          window)  // samples.x: of the pass's first ray, counted over all passes; w.pixels as in sppm_eye
+BUFFER_RW(2, FilmPixel, film)
+BUFFER_RO(3, SppmHit, hits)
+BUFFER_RO(4, vec4, places)
+BUFFER_RW(5, SppmHit, ends)
+BUFFER_RW(6, vec4, queries)
+
+CONST uint GATHER_STREAM = 0x2545f491u;  // keeps the numbers apart from those of eye paths
+
+KERNEL(photon_map_rays) {
+    FilmWindow w = window[0];
+    SppmHit end;
+    end.origin = uvec4(0u);
+    end.direction = uvec4(0u);
+    end.more = uvec4(0u);
+    end.radiance = vec4(0.0f);
+    end.throughput = vec4(0.0f);
+    vec4 query = vec4(0.0f, 0.0f, 0.0f, -1.0f);
+    if (places[index].w >= 0.0f) {
+        SppmHit hit = hits[index];
+        vec3 direction = hit_direction(hit);
+        Surface s = hit_surface(hit);
+        Surface shaded = s;
+        Frame frame;
+        Bsdf bsdf = material_bsdf(shaded, -direction, frame);
+        vec3 wo = to_local(frame, -direction);
+        uint x = w.pixels.x + index % w.pixels.z;
+        uint y = w.pixels.y + index / w.pixels.z;
+        // Rays of all passes are one stratified set.
+        Sampler numbers =
+            sampler_begin(y * scene[0].camera.film.x + x, w.samples.x, w.samples.z ^ GATHER_STREAM, w.samples.w);
+        EyePath path = eye_path_begin(s.position, direction, hit.more.z);
+        path.depth = int(hit.more.w);
+        // A specular lobe here is the eye path's: what comes over it is followed from the camera.
+        if (eye_path_scatters(s, frame, bsdf, wo, numbers, EYE_LOBES_OTHER, path)) {
+            FilmPixel pixel = film[index];
+            uint rays = 0u;
+            follow_eye_path(numbers, false, path, pixel, end, query, rays);
+            end.throughput = vec4(path.throughput.x, path.throughput.y, path.throughput.z, 1.0f);
+            film[index].counts.y += rays;
+        }
+    }
+    ends[index] = end;
+    queries[index] = query;
+}
