@@ -32,7 +32,8 @@ struct KdBox {
 
 struct KdArgs {
     uvec4 sizes;  // x: photons, y: photons of a leaf, z: round, w: groups of cells in this round
-    uvec4 nodes;  // x: place of the round's first node, y: of the next round's; z: which step of levels; of list, whether it is its second run
+    uvec4
+        nodes;  // x: place of the round's first node, y: of the next round's; z: which step of levels; of list, whether it is its second run
 };
 
 struct KdLarge {
