@@ -1,4 +1,5 @@
-// backends_test at the full size of the pictures and with 512 samples per pixel, and the larger scenes with one: minutes.
+// backends_test at the full size of the pictures and with 512 samples per pixel, the larger scenes with one, and photon mapping
+// everywhere: minutes.
 #include "support/agreement.h"
 
 #include <gtest/gtest.h>
@@ -37,6 +38,21 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Combine(testing::Values("cornell-box/scene", "veach-mis/scene", "veach-bidir/scene", "coffee/scene"),
                      testing::Values("cpu-bvh2", "vulkan")),
     [](const auto& info) { return test_name(std::get<0>(info.param) + "_" + std::get<1>(info.param)); });
+
+// PhotonMappingTest of backends_test, for every effect.
+class PhotonMappingLongTest : public testing::TestWithParam<std::string> {};
+
+TEST_P(PhotonMappingLongTest, TwoPassesAreTheSameOnVulkan) {
+    RenderSettings settings;
+    settings.integrator = "sppm:maxdepth=12,photonsperiteration=20000";
+    settings.resolution = {{64, 64}};
+    settings.samples = 2;
+    settings.seed = 24;
+    expect_agreement(GetParam(), "vulkan", settings, 1e-5, 0.999);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, PhotonMappingLongTest, testing::ValuesIn(small_scenes()),
+                         [](const auto& info) { return test_name(info.param); });
 
 }  // namespace
 }  // namespace lampyris::test

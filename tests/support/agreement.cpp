@@ -58,7 +58,7 @@ std::string test_name(std::string text) {
 Agreement expect_agreement(const std::string& scene, const std::string& other, const RenderSettings& settings,
                            double tolerance, double least) {
     RenderSettings s = settings;
-    s.integrator = "path";
+    if (s.integrator.empty()) s.integrator = "path";  // whatever the scene asks for
     s.backend = "cpu";
     const Rendered cpu = render_file(scene_path(scene), s);
     s.backend = other;

@@ -27,7 +27,7 @@ std::string scene_path(const std::string& name);
 // A name fit for a test.
 std::string test_name(std::string text);
 
-// Renders on the CPU and on `other`, prints the shares as a line of a table, and leaves images where `least` is not reached.
+// Renders on the CPU and on `other`, by `path` if the settings name no integrator, prints the shares as a line of a table, and leaves images where `least` is not reached.
 Agreement expect_agreement(const std::string& scene, const std::string& other, const RenderSettings& settings,
                            double tolerance, double least);
 
