@@ -162,22 +162,29 @@ FN vec3 bsdf_eval_pdf(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport, OUT(float) p
     if (HAS(EFFECT_DIFFUSE_TRANSMISSION) && b.kind == MATERIAL_DIFFUSE_TRANSMISSION) {
         return diffuse_transmission_eval(b.color0, b.color1, wo, wi, pdf);
     }
-    if (HAS(EFFECT_COAT) && b.inner >= 0.0f) return clear_coat_eval(b, wo, wi, pdf);
-    if (HAS(EFFECT_COAT) && bsdf_is_layered(b)) {
-        pdf = layered_pdf(b, wo, wi, transport);
-        return layered_eval(b, wo, wi, transport);
+    if (HAS(EFFECT_COAT) && RARELY(b.inner >= 0.0f)) return clear_coat_eval(b, wo, wi, pdf);
+    if (HAS(EFFECT_COAT) && RARELY(bsdf_is_layered(b))) {
+        Bsdf coated = b;
+        pdf = layered_pdf(coated, wo, wi, transport);
+        return layered_eval(coated, wo, wi, transport);
     }
     return vec3(0.0f);
 }
 
 FN vec3 bsdf_eval(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport) {
-    if (HAS(EFFECT_COAT) && bsdf_is_layered(b) && b.inner < 0.0f) return layered_eval(b, wo, wi, transport);
+    if (HAS(EFFECT_COAT) && RARELY(bsdf_is_layered(b) && b.inner < 0.0f)) {
+        Bsdf coated = b;
+        return layered_eval(coated, wo, wi, transport);
+    }
     float pdf;
     return bsdf_eval_pdf(b, wo, wi, transport, pdf);
 }
 
 FN float bsdf_pdf(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport) {
-    if (HAS(EFFECT_COAT) && bsdf_is_layered(b) && b.inner < 0.0f) return layered_pdf(b, wo, wi, transport);
+    if (HAS(EFFECT_COAT) && RARELY(bsdf_is_layered(b) && b.inner < 0.0f)) {
+        Bsdf coated = b;
+        return layered_pdf(coated, wo, wi, transport);
+    }
     float pdf;
     bsdf_eval_pdf(b, wo, wi, transport, pdf);
     return pdf;
@@ -198,10 +205,13 @@ FN bool bsdf_sample(IN(Bsdf) b, vec3 wo, float uc, vec2 u, uint transport, OUT(B
         found = thin_dielectric_sample(b.eta, wo, uc, s);
     } else if (HAS(EFFECT_DIFFUSE_TRANSMISSION) && b.kind == MATERIAL_DIFFUSE_TRANSMISSION) {
         found = diffuse_transmission_sample(b.color0, b.color1, wo, uc, u, s);
-    } else if (HAS(EFFECT_COAT) && b.inner >= 0.0f) {
+    } else if (HAS(EFFECT_COAT) && RARELY(b.inner >= 0.0f)) {
         found = clear_coat_sample(b, wo, uc, u, s);
-    } else if (HAS(EFFECT_COAT) && bsdf_is_layered(b)) {
-        found = layered_sample(b, wo, uc, u, transport, s);
+    } else if (HAS(EFFECT_COAT) && RARELY(bsdf_is_layered(b))) {
+        Bsdf coated = b;
+        BsdfSample chosen = s;
+        found = layered_sample(coated, wo, uc, u, transport, chosen);
+        s = chosen;
     }
     return found && s.pdf > 0.0f && !is_black(s.f);
 }

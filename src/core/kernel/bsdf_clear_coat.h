@@ -21,7 +21,7 @@ FN float clear_coat_partial_term(float mu_o, float eta, float thickness) {
 }
 
 // A for eta > 1, by Gauss-Legendre rules of 6 and 5 points on the two sides of the critical angle; off by less than 3e-4.
-FN float clear_coat_inner_reflectance(float eta, float thickness) {
+RARE_FN float clear_coat_inner_reflectance(float eta, float thickness) {
     float critical = sqrt((eta - 1.0f) * (eta + 1.0f)) / eta;
     float sum = 0.0f;
     sum += 0.0856622462f * clear_coat_total_term(0.0337652429f * critical, thickness) * critical;

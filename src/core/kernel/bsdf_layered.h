@@ -138,7 +138,7 @@ FN vec3 layered_walk(IN(Bsdf) b, IN(BsdfSample) wos, IN(BsdfSample) wis, vec3 wi
     return sum;
 }
 
-FN vec3 layered_eval(IN(Bsdf) b, vec3 wo_any, vec3 wi_any, uint transport) {
+RARE_FN vec3 layered_eval(IN(Bsdf) b, vec3 wo_any, vec3 wi_any, uint transport) {
     vec3 wo = wo_any.z < 0.0f ? -wo_any : wo_any;
     vec3 wi = wo_any.z < 0.0f ? -wi_any : wi_any;
     if (is_grazing(wo) || !(wi.z >= MIN_COSINE)) return vec3(0.0f);
@@ -158,7 +158,7 @@ FN vec3 layered_eval(IN(Bsdf) b, vec3 wo_any, vec3 wi_any, uint transport) {
 
 // Density of the layers as if light left after at most one reflection at the base, estimated by one sample of each
 // direction inside, mixed with a tenth of the uniform density for all else (pbrt, 4th edition, section 14.3.4).
-FN float layered_pdf(IN(Bsdf) b, vec3 wo_any, vec3 wi_any, uint transport) {
+RARE_FN float layered_pdf(IN(Bsdf) b, vec3 wo_any, vec3 wi_any, uint transport) {
     vec3 wo = wo_any.z < 0.0f ? -wo_any : wo_any;
     vec3 wi = wo_any.z < 0.0f ? -wi_any : wi_any;
     if (is_grazing(wo) || !(wi.z >= MIN_COSINE)) return 0.0f;
@@ -194,7 +194,7 @@ FN float layered_pdf(IN(Bsdf) b, vec3 wo_any, vec3 wi_any, uint transport) {
 
 // A direction by a walk that chooses at every event. The walk's weight so far goes into f, and the last event's density is
 // the pdf: their quotient is unbiased, each alone is not a value or density of the whole.
-FN bool layered_sample(IN(Bsdf) b, vec3 wo_any, float uc, vec2 u, uint transport, INOUT(BsdfSample) s) {
+RARE_FN bool layered_sample(IN(Bsdf) b, vec3 wo_any, float uc, vec2 u, uint transport, INOUT(BsdfSample) s) {
     bool below = wo_any.z < 0.0f;
     vec3 wo = below ? -wo_any : wo_any;
     if (!dielectric_sample(b.alpha, b.eta, wo, uc, u, transport, LOBE_BOTH_SIDES, s)) return false;

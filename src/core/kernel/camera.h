@@ -15,7 +15,7 @@ FN Ray camera_ray(vec2 raster, vec2 u_lens) {
     } else {
         direction = on_screen;
     }
-    if (HAS(EFFECT_DEPTH_OF_FIELD) && camera.lens.x > 0.0f) {
+    if (CALLED_FOR(EFFECT_DEPTH_OF_FIELD) && camera.lens.x > 0.0f) {
         // All rays of one film point meet on the plane of focus (direction.z is 1).
         vec3 focus = origin + direction * camera.lens.y;
         vec2 lens = sample_concentric_disk(u_lens);

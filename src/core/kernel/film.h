@@ -72,7 +72,7 @@ FN CameraSample camera_sample(IN(FilmWindow) w, uvec2 pixel, uint i) {
     s.numbers = sampler_begin(y * scene[0].camera.film.x + x, s.pass, w.samples.z, w.samples.w);
     vec2 offset = pixel_filter_sample(sample_2d_at(s.numbers, 0u), s.weight);
     vec2 u_lens = vec2(0.5f);
-    if (HAS(EFFECT_DEPTH_OF_FIELD)) u_lens = sample_2d_at(s.numbers, 2u);
+    if (CALLED_FOR(EFFECT_DEPTH_OF_FIELD)) u_lens = sample_2d_at(s.numbers, 2u);
     s.ray = camera_ray(vec2(float(x) + 0.5f + offset.x, float(y) + 0.5f + offset.y), u_lens);
     s.numbers.dimension = CAMERA_DIMENSIONS;
     return s;

@@ -8,11 +8,6 @@ CONST uint MAX_PASSED_SURFACES = 100000u;
 // Shadow rays stop short of the light by this share of their length (as pbrt's do).
 CONST float SHADOW_EPSILON = 1e-4f;
 
-// Texture coordinates and derivatives are for textures, masks, bump maps and anisotropic roughness only.
-FN bool surface_needs_uv() {
-    return CALLED_FOR(EFFECT_TEXTURES | EFFECT_ALPHA | EFFECT_BUMP | EFFECT_ANISOTROPIC | EFFECT_LIGHT_TEXTURES);
-}
-
 // The triangle's point that the ray meets (Möller and Trumbore 1997 for the barycentrics), in the geometry set's space.
 FN void triangle_surface(uint geometry, uint primitive, vec3 o, vec3 d, INOUT(Surface) s) {
     uvec4 data = geometries[geometry].data;
@@ -135,6 +130,7 @@ FN bool surface_at(IN(Hit) hit, vec3 o, vec3 d, INOUT(Surface) s) {
         triangle_surface(hit.geometry, hit.primitive, set_o, set_d, s);
     }
     if (HAS(EFFECT_INSTANCES) && hit.instance != 0u) surface_to_world(hit.instance, s);
+    s.way = way_out(s.position, s.error, s.ng);
     uvec4 ids = geometries[hit.geometry].ids;
     s.instance = hit.instance;
     s.geometry = hit.geometry;
@@ -145,8 +141,7 @@ FN bool surface_at(IN(Hit) hit, vec3 o, vec3 d, INOUT(Surface) s) {
 }
 
 // Whether a masked surface lets this ray pass: by chance, with a number that belongs to the ray (as pbrt does).
-FN bool alpha_passes(IN(Surface) s, vec3 o, vec3 d) {
-    if (geometries[s.geometry].ids.z == NONE && geometries[s.geometry].alpha.x >= 1.0f) return false;
+RARE_FN bool alpha_passes_by_chance(IN(Surface) s, vec3 o, vec3 d) {
     TextureContext context;
     context.position = s.position;
     context.normal = s.ng;
@@ -157,6 +152,12 @@ FN bool alpha_passes(IN(Surface) s, vec3 o, vec3 d) {
     uint h = hash_combine(hash_combine(floatBitsToUint(o.x), floatBitsToUint(o.y)), floatBitsToUint(o.z));
     h = hash_combine(hash_combine(h, floatBitsToUint(d.x)), hash_combine(floatBitsToUint(d.y), floatBitsToUint(d.z)));
     return unit_float(h) > alpha;
+}
+
+FN bool alpha_passes(IN(Surface) s, vec3 o, vec3 d) {
+    if (geometries[s.geometry].ids.z == NONE && geometries[s.geometry].alpha.x >= 1.0f) return false;
+    Surface masked = s;
+    return alpha_passes_by_chance(masked, o, d);
 }
 
 FN bool is_interface(IN(Surface) s) { return materials[s.material].data.x == MATERIAL_INTERFACE; }
@@ -173,7 +174,7 @@ FN bool intersect_scene_from(INOUT(vec3) origin, vec3 direction, OUT(Surface) s,
         s.distance += passed;
         if (!(HAS(EFFECT_ALPHA) && alpha_passes(s, origin, direction))) return true;
         passed = s.distance;
-        origin = offset_origin(s.position, s.error, s.ng, direction);
+        origin = origin_beyond(s.position, s.way, direction);
     }
     REPORT_UNFINISHED();
     return false;
@@ -185,18 +186,12 @@ FN bool intersect_scene(vec3 origin, vec3 direction, OUT(Surface) s, INOUT(uint)
     return intersect_scene_from(o, direction, s, hit, rays);
 }
 
-// Whether anything opaque lies between a surface point and a point `distance` away along the unit direction. If not,
-// `transmittance` is what the media on the way leave, `start` being the one in which the ray starts.
-FN bool shadow_ray(vec3 position, vec3 error, vec3 ng, vec3 direction, float distance, uint start,
-                   OUT(vec3) transmittance, INOUT(uint) rays) {
+// shadow_ray where surfaces may let the ray pass: o is outside of the first one's rounding error.
+RARE_FN bool shadow_ray_through(vec3 start_o, vec3 direction, float distance, float start_t_max, uint start,
+                                OUT(vec3) transmittance, INOUT(uint) rays) {
     transmittance = vec3(1.0f);
-    vec3 o = offset_origin(position, error, ng, direction);
-    float t_max = distance >= INFINITE_DISTANCE ? INFINITE_DISTANCE : distance * (1.0f - SHADOW_EPSILON);
-    if (!CALLED_FOR(EFFECT_ALPHA | EFFECT_INTERFACE)) {
-        rays += 1u;
-        if (HAS(EFFECT_MEDIUM)) transmittance = medium_transmittance(start, distance);
-        return trace_occluded(o, direction, t_max);
-    }
+    vec3 o = start_o;
+    float t_max = start_t_max;
     uint medium = start;
     float left = distance;  // to the light itself, of which t_max ends short
     for (uint i = 0u; i < MAX_PASSED_SURFACES; ++i) {
@@ -215,7 +210,7 @@ FN bool shadow_ray(vec3 position, vec3 error, vec3 ng, vec3 direction, float dis
             transmittance *= medium_transmittance(medium, s.distance);
             if (crosses) medium = medium_behind(s, direction, medium);
         }
-        o = offset_origin(s.position, s.error, s.ng, direction);
+        o = origin_beyond(s.position, s.way, direction);
         if (distance < INFINITE_DISTANCE) {
             t_max -= s.distance;
             left -= s.distance;
@@ -225,16 +220,35 @@ FN bool shadow_ray(vec3 position, vec3 error, vec3 ng, vec3 direction, float dis
     return true;
 }
 
+// Whether anything opaque lies between o, outside of a surface, and a point `distance` away along the unit direction. If not,
+// `transmittance` is what the media on the way leave, `start` being the one in which the ray starts.
+FN bool shadow_ray(vec3 o, vec3 direction, float distance, uint start, OUT(vec3) transmittance, INOUT(uint) rays) {
+    float t_max = distance >= INFINITE_DISTANCE ? INFINITE_DISTANCE : distance * (1.0f - SHADOW_EPSILON);
+    if (HAS(EFFECT_ALPHA | EFFECT_INTERFACE) && RARELY(CALLED_FOR(EFFECT_ALPHA | EFFECT_INTERFACE))) {
+        vec3 through;
+        uint traced = rays;
+        bool occluded = shadow_ray_through(o, direction, distance, t_max, start, through, traced);
+        rays = traced;
+        transmittance = through;
+        return occluded;
+    }
+    rays += 1u;
+    transmittance = HAS(EFFECT_MEDIUM) ? medium_transmittance(start, distance) : vec3(1.0f);
+    return trace_occluded(o, direction, t_max);
+}
+
 FN bool scene_occluded(vec3 position, vec3 error, vec3 ng, vec3 direction, float distance, INOUT(uint) rays) {
     vec3 transmittance;
-    return shadow_ray(position, error, ng, direction, distance, MEDIUM_VACUUM, transmittance, rays);
+    vec3 o = offset_origin(position, error, ng, direction);
+    return shadow_ray(o, direction, distance, MEDIUM_VACUUM, transmittance, rays);
 }
 
 // The share of light that comes from a point `distance` away along the unit direction to s, which was reached through `medium`.
 FN vec3 scene_transmittance(IN(Surface) s, vec3 direction, float distance, uint medium, INOUT(uint) rays) {
     vec3 transmittance;
     uint start = medium_behind(s, direction, medium);
-    bool occluded = shadow_ray(s.position, s.error, s.ng, direction, distance, start, transmittance, rays);
+    bool occluded =
+        shadow_ray(origin_beyond(s.position, s.way, direction), direction, distance, start, transmittance, rays);
     return occluded ? vec3(0.0f) : transmittance;
 }
 

@@ -36,7 +36,7 @@ FN float mix_choice(vec3 position, vec3 wo, uint material) {
 }
 
 // Replaces a mix in s.material by the material that it shows here. wo: world space.
-FN void material_resolve(INOUT(Surface) s, vec3 wo) {
+RARE_FN void material_resolve(INOUT(Surface) s, vec3 wo) {
     for (uint i = 0u; i < MIX_DEPTH; ++i) {
         if (materials[s.material].data.x != MATERIAL_MIX) return;
         uvec4 extra = materials[s.material].extra;
@@ -83,14 +83,16 @@ FN void apply_normal_map(INOUT(Surface) s, uint image) {
     s.ns = face_forward(unit(to_world(frame_from_xz(s.dpdu, s.ns), n)), s.ng);
 }
 
+FN bool material_is_textured(IN(MaterialRecord) m) {
+    uvec4 both = m.textures & m.textures2;
+    return (both.x & both.y & both.z & both.w) != NONE;
+}
+
 // Puts the values of textures into the record's slots, and bends the shading normal where there is a bump map. One loop with one
 // call: a GLSL compiler inlines each evaluation of a program.
 FN void material_textures(INOUT(MaterialRecord) m, INOUT(Surface) s) {
     bool bumped = HAS(EFFECT_BUMP) && m.data.z != NONE;
-    uint all = m.textures.x & m.textures.y & m.textures.z & m.textures.w & m.textures2.x & m.textures2.y &
-               m.textures2.z & m.textures2.w;
-    bool textured = HAS(EFFECT_TEXTURES) && all != NONE;
-    if (!bumped && !textured) return;
+    bool textured = HAS(EFFECT_TEXTURES) && material_is_textured(m);
     TextureContext here = surface_texture_context(s);
     vec3 displaced = vec3(0.0f);
     uint end = textured ? 3u + MATERIAL_SLOTS : 3u;
@@ -137,9 +139,14 @@ FN vec2 roughness_alpha(float u, float v, bool remap) { return remap ? vec2(safe
 // The Bsdf at s, and the frame in which it is meant: z is the shading normal. wo, the direction that light leaves in, and the
 // frame's axes are in world space. s.ns and s.dpdu are those of the bump or normal map afterwards, s.material is never a mix.
 FN Bsdf material_bsdf(INOUT(Surface) s, vec3 wo, OUT(Frame) frame) {
-    if (HAS(EFFECT_MIX)) material_resolve(s, wo);
+    if (HAS(EFFECT_MIX) && RARELY(materials[s.material].data.x == MATERIAL_MIX)) {
+        Surface mixed = s;
+        material_resolve(mixed, wo);
+        s.material = mixed.material;
+    }
     MaterialRecord m = materials[s.material];
-    if (HAS(EFFECT_BUMP) || HAS(EFFECT_TEXTURES)) material_textures(m, s);
+    if ((HAS(EFFECT_BUMP) && RARELY(m.data.z != NONE)) || (HAS(EFFECT_TEXTURES) && RARELY(material_is_textured(m))))
+        material_textures(m, s);
     if (HAS(EFFECT_BUMP) && m.data.w != NONE) apply_normal_map(s, m.data.w);
 
     uint kind = m.data.x;

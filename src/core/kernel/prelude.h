@@ -12,6 +12,10 @@
 #define OUT(T) T&
 #define INOUT(T) T&
 #define CONST static constexpr
+// A function that few scenes call. C++ compilers do not inline it: what it needs takes no registers from what all scenes run.
+// Give it copies of structs: one whose address is known to another function stays in memory.
+#define RARE_FN inline __attribute__((noinline))
+#define RARELY(condition) __builtin_expect((condition), false)
 #ifdef KERNEL_INLINE_ALL
 #define FN inline __attribute__((always_inline))
 #else
@@ -48,6 +52,8 @@
 #define INOUT(T) inout T
 #define CONST const
 #define FN
+#define RARE_FN
+#define RARELY(condition) (condition)
 #define SCENE_RO(binding_, T, name) \
     layout(std430, set = 0, binding = binding_) readonly restrict buffer name##Block { T name[]; };
 #define BUFFER_RO(binding_, T, name) \

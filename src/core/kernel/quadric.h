@@ -149,17 +149,12 @@ FN vec3 quadric_set_position(uint geometry, vec3 p, OUT(vec3) error) {
     return transform_point(m.to0, m.to1, m.to2, p);
 }
 
-// Fills everything of the surface at p (quadric's space) but distance, ids, material and light.
-FN void quadric_fill(uint geometry, vec3 p, INOUT(Surface) s) {
+// Texture coordinates and tangents of the surface at p (quadric's space), whose set normal has the length given.
+FN void quadric_fill_uv(uint geometry, vec3 p, float normal_length, INOUT(Surface) s) {
     GeometryRecord g = geometries[geometry];
     TransformRecord m = transforms[g.ids.w];
     uint kind = g.data.x;
     float phi_max = g.params.w;
-    s.position = quadric_set_position(geometry, p, s.error);
-    vec3 n = quadric_set_normal(geometry, p);
-    float n_length = length_of(n);
-    s.ng = n / n_length;
-    s.ns = s.ng;
     s.uv = quadric_uv(kind, g.params, p);
 
     float x = p.x;
@@ -181,17 +176,30 @@ FN void quadric_fill(uint geometry, vec3 p, INOUT(Surface) s) {
     }
     s.dpdu = transform_vector(m.to0, m.to1, m.to2, dpdu);
     s.dpdv = transform_vector(m.to0, m.to1, m.to2, dpdv);
-    s.dndu = vec3(0.0f);
-    s.dndv = vec3(0.0f);
     if (HAS(EFFECT_BUMP) && kind != GEOMETRY_DISK) {
         float sign = (g.data.y & GEOMETRY_FLIP) != 0u ? -1.0f : 1.0f;
         float curvature = sign / g.params.x;
         vec3 dndu = transform_normal(m.from0, m.from1, m.from2, dpdu * curvature);
         vec3 dndv =
             kind == GEOMETRY_SPHERE ? transform_normal(m.from0, m.from1, m.from2, dpdv * curvature) : vec3(0.0f);
-        s.dndu = unit_derivative(s.ng, n_length, dndu);
-        s.dndv = unit_derivative(s.ng, n_length, dndv);
+        s.dndu = unit_derivative(s.ng, normal_length, dndu);
+        s.dndv = unit_derivative(s.ng, normal_length, dndv);
     }
+}
+
+// Fills everything of the surface at p (quadric's space) but distance, ids, material and light.
+FN void quadric_fill(uint geometry, vec3 p, INOUT(Surface) s) {
+    s.position = quadric_set_position(geometry, p, s.error);
+    vec3 n = quadric_set_normal(geometry, p);
+    float n_length = length_of(n);
+    s.ng = n / n_length;
+    s.ns = s.ng;
+    s.uv = vec2(0.0f);
+    s.dpdu = vec3(0.0f);
+    s.dpdv = vec3(0.0f);
+    s.dndu = vec3(0.0f);
+    s.dndv = vec3(0.0f);
+    if (surface_needs_uv()) quadric_fill_uv(geometry, p, n_length, s);
 }
 
 // The surface where a ray that hits the quadric meets it first; false (and s unchanged) where it does not.

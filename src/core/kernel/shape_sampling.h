@@ -103,23 +103,24 @@ FN vec3 sample_spherical_triangle(vec3 a, vec3 b, vec3 c, float solid_angle, vec
     return unit(b * (1.0f - one_minus_cos) + side * (safe_sqrt(one_minus_cos * (2.0f - one_minus_cos)) / side_length));
 }
 
-// The corners of a triangle light: which vertices they are.
-FN uvec3 triangle_light_corners(IN(LightRecord) light) {
-    uint first = geometries[light.ids.x].data.z + 3u * light.ids.y;
+// The corners of a triangle: which vertices they are.
+FN uvec3 triangle_corners(uint geometry, uint primitive) {
+    uint first = geometries[geometry].data.z + 3u * primitive;
     return uvec3(indices[first], indices[first + 1u], indices[first + 2u]);
+}
+
+RARE_FN vec3 interpolated_light_normal(uint geometry, uint primitive, vec3 barycentric) {
+    uint normals_of = geometries[geometry].attributes.x;
+    uvec3 corner = triangle_corners(geometry, primitive);
+    return barycentric.x * vertex_normal(normals_of + corner.x) + barycentric.y * vertex_normal(normals_of + corner.y) +
+           barycentric.z * vertex_normal(normals_of + corner.z);
 }
 
 // Unit normal of a triangle light, turned as the geometry's flags and vertex normals say.
 FN vec3 triangle_light_normal(IN(LightRecord) light, vec3 barycentric) {
-    vec3 ng = vec3(light.normal.x, light.normal.y, light.normal.z);
-    if (HAS(EFFECT_SMOOTH_NORMALS) && light.normal.w != 0.0f) {
-        uint normals_of = geometries[light.ids.x].attributes.x;
-        uvec3 corner = triangle_light_corners(light);
-        vec3 ns = barycentric.x * vertex_normal(normals_of + corner.x) +
-                  barycentric.y * vertex_normal(normals_of + corner.y) +
-                  barycentric.z * vertex_normal(normals_of + corner.z);
-        return face_forward(ng, ns);
-    }
+    vec3 ng = vec3(light.normal);
+    if (HAS(EFFECT_SMOOTH_NORMALS) && RARELY(light.normal.w != 0.0f))
+        return face_forward(ng, interpolated_light_normal(light.ids.x, light.ids.y, barycentric));
     return ng;
 }
 
@@ -128,7 +129,7 @@ FN vec2 triangle_light_uv(IN(LightRecord) light, vec3 barycentric) {
     if ((HAS(EFFECT_LIGHT_TEXTURES) || HAS(EFFECT_ALPHA)) &&
         (geometries[light.ids.x].data.y & GEOMETRY_HAS_UVS) != 0u) {
         uint uvs_of = geometries[light.ids.x].attributes.y;
-        uvec3 corner = triangle_light_corners(light);
+        uvec3 corner = triangle_corners(light.ids.x, light.ids.y);
         return barycentric.x * vertex_uv(uvs_of + corner.x) + barycentric.y * vertex_uv(uvs_of + corner.y) +
                barycentric.z * vertex_uv(uvs_of + corner.z);
     }

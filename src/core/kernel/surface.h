@@ -20,6 +20,7 @@ struct Hit {
 struct Surface {
     vec3 position;
     vec3 error;  // bound of the absolute rounding error of `position`, per coordinate: rays start outside of it
+    vec3 way;    // out of the error, along ng (way_out, math.h); of surfaces that rays found
     vec3 ng;     // unit geometric normal, on the side that pbrt calls outside (see reference: orientation rules)
     vec3 ns;     // unit shading normal
     vec3 dpdu;   // of the surface; the shading tangent is its part orthogonal to ns
@@ -40,6 +41,7 @@ FN Surface no_surface() {
     Surface s;
     s.position = vec3(0.0f);
     s.error = vec3(0.0f);
+    s.way = vec3(0.0f);
     s.ng = vec3(0.0f);
     s.ns = vec3(0.0f);
     s.dpdu = vec3(0.0f);

@@ -251,7 +251,7 @@ FN vec3 texture_image(uint op, uvec4 code, vec2 st) {
 
 // The value of a texture. Every operand is evaluated, also those that a checkerboard does not show: a loop over operations
 // branches alike for all points of a program.
-FN vec3 texture_color(uint program, IN(TextureContext) c) {
+RARE_FN vec3 texture_color(uint program, IN(TextureContext) c) {
     // The top of the stack is a variable: a program of one operation, the common case, touches no array.
     vec3 stack[TEXTURE_STACK];
     vec3 top = vec3(0.0f);

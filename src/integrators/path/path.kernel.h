@@ -59,7 +59,7 @@ FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, IN(Sampler) numbers, 
             }
         }
         if (HAS(EFFECT_INTERFACE) && is_interface(s)) {
-            origin = offset_origin(s.position, s.error, s.ng, direction);
+            origin = origin_beyond(s.position, s.way, direction);
             medium = medium_behind(s, direction, medium);
             if (++passed > MAX_PASSED_SURFACES) {
                 REPORT_UNFINISHED();
@@ -104,7 +104,7 @@ FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, IN(Sampler) numbers, 
         direction = to_world(frame, next.wi);
         direction = unit(direction);
         previous = s.position;
-        origin = offset_origin(s.position, s.error, s.ng, direction);
+        origin = origin_beyond(s.position, s.way, direction);
         medium = medium_behind(s, direction, medium);
 
         float survival = max_component(throughput) * eta_scale;
