@@ -42,6 +42,9 @@ CONST uint kAllEffects = 0x0fffffffu;
 CONST uint kDiffuseEffects = EFFECT_SMOOTH_NORMALS | EFFECT_AREA_LIGHTS;
 CONST uint kGlassEffects =
     kDiffuseEffects | EFFECT_QUADRICS | EFFECT_QUADRIC_LIGHTS | EFFECT_CONDUCTOR | EFFECT_DIELECTRIC | EFFECT_ROUGH;
+// Opaque, untextured surfaces under lights that are not surfaces themselves.
+CONST uint kSkyEffects = EFFECT_SMOOTH_NORMALS | EFFECT_QUADRICS | EFFECT_CONDUCTOR | EFFECT_ROUGH | EFFECT_IMAGES |
+                         EFFECT_POINT_LIGHTS | EFFECT_DISTANT_LIGHTS | EFFECT_ENVIRONMENT | EFFECT_ENVIRONMENT_IMAGE;
 CONST uint kTexturedEffects = kGlassEffects | EFFECT_TEXTURES | EFFECT_IMAGES | EFFECT_POINT_LIGHTS |
                               EFFECT_DISTANT_LIGHTS | EFFECT_ENVIRONMENT | EFFECT_ENVIRONMENT_IMAGE |
                               EFFECT_DEPTH_OF_FIELD;

@@ -1,7 +1,7 @@
 // Path tracing with next-event estimation, multiple importance sampling (Veach 1997, chapters 9 and 10) and Russian
 // roulette. One invocation adds a range of samples to one pixel.
 // clang-format off
-#define KERNEL_CPU_VARIANTS kAllEffects, kTexturedEffects, kGlassEffects, kDiffuseEffects, kGlassEffects | EFFECT_COAT, kDiffuseEffects | EFFECT_QUADRICS, kDiffuseEffects | EFFECT_QUADRICS | EFFECT_DIELECTRIC, kDiffuseEffects | EFFECT_TEXTURES | EFFECT_IMAGES
+#define KERNEL_CPU_VARIANTS kAllEffects, kTexturedEffects, kGlassEffects, kSkyEffects, kGlassEffects | EFFECT_COAT, kDiffuseEffects | EFFECT_QUADRICS, kDiffuseEffects | EFFECT_QUADRICS | EFFECT_DIELECTRIC, kDiffuseEffects | EFFECT_TEXTURES | EFFECT_IMAGES
 // clang-format on
 #include "core/kernel/scene.h"
 
@@ -28,7 +28,6 @@ FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, IN(Sampler) numbers, 
     float bsdf_density = 0.0f;   // pdf (solid angle) with which `direction` was sampled
     float eta_scale = 1.0f;      // undoes the scaling of radiance on refraction: roulette must not see it
     bool lights_were_sampled = false;
-    bool first = true;
     int depth = 0;
     uint passed = 0u;
     uint medium = camera_medium();
@@ -70,8 +69,7 @@ FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, IN(Sampler) numbers, 
         }
         Frame frame;
         Bsdf bsdf = material_bsdf(s, -direction, frame);
-        if (first) {
-            first = false;
+        if (depth == 0) {
             vec3 albedo = bsdf_albedo(bsdf);
             pixel.albedo += vec4(albedo.x, albedo.y, albedo.z, 1.0f);
             pixel.normal += vec4(s.ns.x, s.ns.y, s.ns.z, 0.0f);
