@@ -8,28 +8,35 @@ class HashList : public PhotonMap {
  public:
     LinkedListParams params;
     PhotonMapCapabilities capabilities() const override { return {.exact = true, .fixed_order = params.order == 0}; }
-    // Link; for the order, the node and its key.
+    // The head, without an atomic; for the order, the key and link of each.
     ConstructionTraffic traffic() const override {
-        return {.accesses = params.order == 0 ? 2.0 : 0.0, .atomics = 1, .one_thread = true};
+        return {.accesses = params.order == 0 ? 2.0 : 1.0, .one_thread = true};
     }
 
  protected:
     static constexpr const char* kInsert = "accel/hash_list/hash_list_insert.kernel.h";
-    static constexpr const char* kOrder = "accel/hash_list/hash_list_order.kernel.h";
-    static constexpr uint32_t kChunk = 4096, kOrderChunk = 1024;  // CHUNK of both
-    std::vector<std::string> kernels() const override { return {kInsert, kOrder}; }
+    static constexpr const char* kOrder = "accel/linked_list/linked_list_order.kernel.h";
+    static constexpr const char* kPlace = "accel/hash_list/hash_list_place.kernel.h";
+    static constexpr uint32_t kChunk = 4096;  // CHUNK of the first and the last
+    static constexpr uint32_t kSpan = 16;     // CHAIN_SPAN of linked_list_chains.layout.h
+    std::vector<std::string> kernels() const override { return {kInsert, kOrder, kPlace}; }
 
     void construct(const PhotonSet& photons) override {
+        const bool keyed = params.order == 0;
+        const size_t count = photons.count;
+        const uint32_t chunks = (photons.count + kChunk - 1) / kChunk;
         kernel::PhotonGrid grid = make_grid(photons, params.cell_size);
         grid.sizes.y = table_entries(photons, params.table_size);
+        grid.sizes.z = keyed;
         const BufferHandle record = upload("grid", grid);
         const BufferHandle heads = keep("heads", size_t(grid.sizes.y) * 4);
-        const BufferHandle nodes = keep("nodes", size_t(photons.count) * 16);
+        const BufferHandle links = keep("links", keyed ? count * 8 : 8);
+        const BufferHandle nodes = keep("nodes", count * 16);
         clear(heads, size_t(grid.sizes.y) * 4);
-        run_serially(kInsert, {record, photons.photons, heads, nodes}, (photons.count + kChunk - 1) / kChunk);
-        if (params.order == 0)
-            run_serially(kOrder, {record, photons.photons, heads, nodes},
-                         (grid.sizes.y + kOrderChunk - 1) / kOrderChunk);
+        run_serially(kInsert, {record, photons.photons, heads, links, nodes}, chunks);
+        if (!keyed) return;
+        run_serially(kOrder, {record, heads, links}, (batch_count(grid.sizes.y) + kSpan - 1) / kSpan);
+        run_serially(kPlace, {record, photons.photons, links, nodes}, chunks);
     }
     std::vector<BufferHandle> gather_buffers() const override {
         return {kept("grid"), kept("heads"), kept("nodes"), photons_.photons};

@@ -1,10 +1,11 @@
 // One thread links one photon after the other: invocations run one by one, each for CHUNK photons (hash_list.cpp).
 #include "core/kernel/photon_grid.h"
 
-BUFFER_RO(0, PhotonGrid, grid)
+BUFFER_RO(0, PhotonGrid, grid)  // these as in linked_list_link
 BUFFER_RO(1, PhotonRecord, photons)
 BUFFER_RW(2, uint, heads)
-BUFFER_RW(3, uvec4, nodes)
+BUFFER_RW(3, uvec2, links)
+BUFFER_RW(4, uvec4, nodes)
 
 CONST uint CHUNK = 4096u;
 
@@ -21,7 +22,11 @@ KERNEL(hash_list_insert) {
         }
         for (uint k = 0u; k < count; ++k) {
             uvec4 place = photons[begin + k].place;
-            nodes[begin + k] = uvec4(place.x, place.y, place.z, heads[buckets[k]]);
+            if (g.sizes.z != 0u) {
+                links[begin + k] = uvec2(place.w, heads[buckets[k]]);
+            } else {
+                nodes[begin + k] = uvec4(place.x, place.y, place.z, heads[buckets[k]]);
+            }
             heads[buckets[k]] = begin + k + 1u;
         }
     }

@@ -8,23 +8,31 @@ class LinkedList : public PhotonMap {
  public:
     LinkedListParams params;
     PhotonMapCapabilities capabilities() const override { return {.exact = true, .fixed_order = params.order == 0}; }
-    // Link; for the order, the node and its key.
-    ConstructionTraffic traffic() const override { return {.accesses = params.order == 0 ? 2.0 : 0.0, .atomics = 1}; }
+    // Link; for the order, the key and link of each.
+    ConstructionTraffic traffic() const override { return {.accesses = params.order == 0 ? 1.0 : 0.0, .atomics = 1}; }
 
  protected:
     static constexpr const char* kLink = "accel/linked_list/linked_list_link.kernel.h";
     static constexpr const char* kOrder = "accel/linked_list/linked_list_order.kernel.h";
-    std::vector<std::string> kernels() const override { return {kLink, kOrder}; }
+    static constexpr const char* kPlace = "accel/linked_list/linked_list_place.kernel.h";
+    static constexpr uint32_t kSpan = 16;  // CHAIN_SPAN of linked_list_chains.layout.h
+    std::vector<std::string> kernels() const override { return {kLink, kOrder, kPlace}; }
 
     void construct(const PhotonSet& photons) override {
+        const bool keyed = params.order == 0;
+        const size_t count = photons.count;
         kernel::PhotonGrid grid = make_grid(photons, params.cell_size);
         grid.sizes.y = table_entries(photons, params.table_size);
+        grid.sizes.z = keyed;
         const BufferHandle record = upload("grid", grid);
         const BufferHandle heads = keep("heads", size_t(grid.sizes.y) * 4);
-        const BufferHandle nodes = keep("nodes", size_t(photons.count) * 16);
+        const BufferHandle links = keep("links", keyed ? count * 8 : 8);
+        const BufferHandle nodes = keep("nodes", count * 16);
         clear(heads, size_t(grid.sizes.y) * 4);
-        run(kLink, {record, photons.photons, heads, nodes}, batch_count(photons.count));
-        if (params.order == 0) run(kOrder, {record, photons.photons, heads, nodes}, batch_count(grid.sizes.y));
+        run(kLink, {record, photons.photons, heads, links, nodes}, batch_count(photons.count));
+        if (!keyed) return;
+        run(kOrder, {record, heads, links}, (batch_count(grid.sizes.y) + kSpan - 1) / kSpan);
+        run(kPlace, {record, photons.photons, links, nodes}, batch_count(photons.count));
     }
     std::vector<BufferHandle> gather_buffers() const override {
         return {kept("grid"), kept("heads"), kept("nodes"), photons_.photons};

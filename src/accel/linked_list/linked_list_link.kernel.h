@@ -1,10 +1,11 @@
 // Each photon becomes the head of its bucket's chain.
 #include "core/kernel/photon_grid.h"
 
-BUFFER_RO(0, PhotonGrid, grid)
+BUFFER_RO(0, PhotonGrid, grid)  // sizes.z: 1 where chains are to be sorted
 BUFFER_RO(1, PhotonRecord, photons)
-BUFFER_RW(2, uint, heads)  // a photon's index plus one; 0 ends a chain
-BUFFER_RW(3, uvec4, nodes)
+BUFFER_RW(2, uint, heads)   // a photon's index plus one; 0 ends a chain
+BUFFER_RW(3, uvec2, links)  // key, link to the next
+BUFFER_RW(4, uvec4, nodes)  // without `links`: position, link to the next
 
 KERNEL(linked_list_link) {
     PhotonGrid g = grid[0];
@@ -19,6 +20,11 @@ KERNEL(linked_list_link) {
         uint i = batch_item(index, k);
         if (i >= g.sizes.x) continue;
         uvec4 place = photons[i].place;
-        nodes[i] = uvec4(place.x, place.y, place.z, ATOMIC_EXCHANGE_U32(heads[buckets[k]], i + 1u));
+        uint next = ATOMIC_EXCHANGE_U32(heads[buckets[k]], i + 1u);
+        if (g.sizes.z != 0u) {
+            links[i] = uvec2(place.w, next);
+        } else {
+            nodes[i] = uvec4(place.x, place.y, place.z, next);
+        }
     }
 }

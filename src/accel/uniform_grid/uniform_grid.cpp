@@ -12,7 +12,7 @@ class UniformGrid : public PhotonMap {
     PhotonMapCapabilities capabilities() const override {
         return {.exact = !drops(), .lossy = drops(), .fixed_order = !drops()};
     }
-    // Count; slot, and for the order the key.
+    // Count; slot, and for the order its key.
     ConstructionTraffic traffic() const override { return {.accesses = 2, .atomics = 1}; }
 
  protected:
@@ -39,11 +39,12 @@ class UniformGrid : public PhotonMap {
         const BufferHandle record = upload("grid", grid);
         const BufferHandle counts = keep("counts", size_t(cells) * 8);
         const BufferHandle slots = keep("slots", size_t(cells) * params.capacity * 16);
+        const BufferHandle keys = keep("keys", size_t(cells) * params.capacity * 4);
         const BufferHandle nodes = keep("nodes", drops() ? 16 : size_t(photons.count) * 16);
         const BufferHandle dropped = upload("dropped", uint32_t(0));
         clear(counts, size_t(cells) * 8);
-        run(kStore, {record, photons.photons, counts, slots, nodes, dropped}, batch_count(photons.count));
-        run(kOrder, {record, photons.photons, counts, slots, nodes}, batch_count(cells));
+        run(kStore, {record, photons.photons, counts, slots, keys, nodes, dropped}, batch_count(photons.count));
+        run(kOrder, {record, photons.photons, counts, slots, keys, nodes}, batch_count(cells));
         if (!drops()) return;
         uint32_t lost = 0;
         dropped->download(&lost, sizeof lost);

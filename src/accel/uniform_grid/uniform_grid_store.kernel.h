@@ -5,30 +5,41 @@ BUFFER_RO(0, PhotonGrid, grid)
 BUFFER_RO(1, PhotonRecord, photons)
 BUFFER_RW(2, uint, counts)
 BUFFER_RW(3, uvec4, slots)
-BUFFER_RW(4, uvec4, nodes)  // of photons beyond the capacity: position, link to the next
-BUFFER_RW(5, uint, dropped)
+BUFFER_RW(4, uint, keys)    // of the slots' photons
+BUFFER_RW(5, uvec4, nodes)  // of photons beyond the capacity: for now, key and link to the next
+BUFFER_RW(6, uint, dropped)
 
 KERNEL(uniform_grid_store) {
     PhotonGrid g = grid[0];
     uint cells[BATCH];
+    uint ranks[BATCH];
     for (uint k = 0u; k < BATCH; ++k) {
         uint i = batch_item(index, k);
         if (i >= g.sizes.x) continue;
         cells[k] = uniform_grid_index(g, grid_cell(g, place_position(photons[i].place)));
         PREFETCH(counts[2u * cells[k]]);
-        PREFETCH(slots[cells[k] * g.sizes.z]);
+    }
+    // Atomics wait for the stores before them: none lies between.
+    for (uint k = 0u; k < BATCH; ++k) {
+        uint i = batch_item(index, k);
+        if (i >= g.sizes.x) continue;
+        ranks[k] = ATOMIC_ADD_U32(counts[2u * cells[k]], 1u);
+        uint slot = cells[k] * g.sizes.z + min(ranks[k], g.sizes.z - 1u);
+        PREFETCH(slots[slot]);
+        PREFETCH(keys[slot]);
     }
     for (uint k = 0u; k < BATCH; ++k) {
         uint i = batch_item(index, k);
         if (i >= g.sizes.x) continue;
         uvec4 place = photons[i].place;
-        uint rank = ATOMIC_ADD_U32(counts[2u * cells[k]], 1u);
-        if (rank < g.sizes.z) {
-            slots[cells[k] * g.sizes.z + rank] = uvec4(place.x, place.y, place.z, i);
+        if (ranks[k] < g.sizes.z) {
+            uint slot = cells[k] * g.sizes.z + ranks[k];
+            slots[slot] = uvec4(place.x, place.y, place.z, i);
+            keys[slot] = place.w;
         } else if (g.sizes.w != 0u) {
             ATOMIC_ADD_U32(dropped[0], 1u);
         } else {
-            nodes[i] = uvec4(place.x, place.y, place.z, ATOMIC_EXCHANGE_U32(counts[2u * cells[k] + 1u], i + 1u));
+            nodes[i] = uvec4(place.w, ATOMIC_EXCHANGE_U32(counts[2u * cells[k] + 1u], i + 1u), 0u, 0u);
         }
     }
 }
