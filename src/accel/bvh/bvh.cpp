@@ -73,14 +73,14 @@ class Bvh : public PhotonMap {
         run(kCode, {tree, photons.photons, pairs}, count);
         const BufferHandle sorted = radix_sort(pairs, other, count, 32);
         const BufferHandle order = sorted == pairs ? other : pairs;
-        run(kOrder, {tree, photons.photons, sorted, order}, count);
+        run(kOrder, {tree, photons.photons, sorted, order, places, fluxes}, batch_count(count));
         if (ray_query()) {
             // In order, photons of neighbouring boxes lie together; and not every driver (Mesa 25's lavapipe) sorts boxes.
-            run(kBoxes, {tree, photons.photons, order, places, fluxes, boxes}, count);
+            run(kBoxes, {tree, places, boxes}, count);
             build_boxes(boxes, count);
             return;
         }
-        run(kLeaves, {tree, photons.photons, order, places, fluxes, boxes}, record.levels[0].y);
+        run(kLeaves, {tree, places, boxes}, record.levels[0].y);
         for (uint32_t level = 1; level < record.sizes.z; ++level) {
             record.sizes.w = level;
             run(kLevel, {upload("tree", record), boxes}, record.levels[level].y);

@@ -1,13 +1,9 @@
-// For ray queries: copies the photons in order, positions and the rest apart, and puts a box about each that holds every point whose query
-// finds it.
+// For ray queries: a box about each photon that holds every point whose query finds it.
 #include "accel/bvh/bvh.layout.h"
 
 BUFFER_RO(0, TreeRecord, tree)
-BUFFER_RO(1, PhotonRecord, photons)
-BUFFER_RO(2, uvec2, order)
-BUFFER_RW(3, uvec4, places)
-BUFFER_RW(4, uvec4, fluxes)
-BUFFER_RW(5, float, boxes)
+BUFFER_RO(1, uvec4, places)
+BUFFER_RW(2, float, boxes)
 
 // range_reach alone would do: rounding keeps order, so a float q >= p - reach is not below the float nearest to p - reach. The margin, four
 // times the rounding error of the largest number in it, keeps q off the faces, for drivers that scale origin and box by the
@@ -16,10 +12,7 @@ CONST float BOX_MARGIN = 2.3841858e-7f;  // 2^-22
 
 KERNEL(bvh_boxes) {
     if (index >= tree[0].sizes.x) return;
-    PhotonRecord photon = photons[order[index].y];
-    places[index] = photon.place;
-    fluxes[index] = photon.flux;
-    vec3 p = photon_position(photon);
+    vec3 p = place_position(places[index]);
     vec3 reach = vec3(range_reach(tree[0].radius.x));
     vec3 side = reach + (abs(p) + reach) * BOX_MARGIN;
     vec3 low = p - side;

@@ -1,37 +1,88 @@
-// Photons that share the upper half of their code are sorted by the lower half, and where that is the same, too, by key: the order must
-// not depend on that of storage. The first of each run does it.
+// Copies the photons in order: positions, and the rest. Those that share the upper half of their code are sorted by the lower half, and
+// where that is the same, too, by key: the order must not depend on that of storage. The first of each run does it.
 #include "accel/bvh/bvh.layout.h"
 
 BUFFER_RO(0, TreeRecord, tree)
 BUFFER_RO(1, PhotonRecord, photons)
 BUFFER_RO(2, uvec2, pairs)
-BUFFER_RW(3, uvec2, order)
+BUFFER_RW(3, uvec2, order)  // of long runs
+BUFFER_RW(4, uvec4, places)
+BUFFER_RW(5, uvec4, fluxes)
 #include "core/kernel/sort.h"
 
-KERNEL(bvh_order) {
-    uint count = tree[0].sizes.x;
-    if (index >= count) return;
-    uint code = pairs[index].x;
-    if (index > 0u && pairs[index - 1u].x == code) return;
-    uint end = index;
-    for (; end < count && pairs[end].x == code; ++end) order[end] = pairs[end];
-    if (end == index + 1u) return;
-    if (end != count && pairs[end].x == code) REPORT_UNFINISHED();
-    for (uint i = index; i < end; ++i) PREFETCH(photons[order[i].y].place);
-    uint i = index;
-    for (; i < end; ++i) order[i].x = morton_code(tree[0], place_position(photons[order[i].y].place), 0u);
+CONST uint RUN_SHORT = 32u;  // photons that are sorted in registers
+
+FN void bvh_copy(uint to, uint from) {
+    places[to] = photons[from].place;
+    fluxes[to] = photons[from].flux;
+}
+
+FN void bvh_short_run(uint begin, uint count) {
+    uint codes[RUN_SHORT];
+    uint keys[RUN_SHORT];
+    uint from[RUN_SHORT];
+    for (uint n = 0u; n < count; ++n) {
+        uint photon = pairs[begin + n].y;
+        uvec4 place = photons[photon].place;
+        uint code = morton_code(tree[0], place_position(place), 0u);
+        uint hole = n;
+        for (; hole > 0u; --hole) {
+            if (codes[hole - 1u] < code || (codes[hole - 1u] == code && keys[hole - 1u] < place.w)) break;
+            codes[hole] = codes[hole - 1u];
+            keys[hole] = keys[hole - 1u];
+            from[hole] = from[hole - 1u];
+        }
+        codes[hole] = code;
+        keys[hole] = place.w;
+        from[hole] = photon;
+    }
+    for (uint n = 0u; n < count; ++n) bvh_copy(begin + n, from[n]);
+}
+
+FN void bvh_long_run(uint begin, uint end) {
+    uint i = begin;
+    for (; i < end; ++i) {
+        uint photon = pairs[i].y;
+        order[i] = uvec2(morton_code(tree[0], place_position(photons[photon].place), 0u), photon);
+    }
     if (i != end) REPORT_UNFINISHED();
-    sort_order(index, end);
+    sort_order(begin, end);
     // Runs within the run.
-    uint first = index;
-    uint next = index + 1u;
+    uint first = begin;
+    uint next = begin + 1u;
     for (; next <= end; ++next) {
         if (next < end && order[next].x == order[first].x) continue;
         if (next - first > 1u) {
             for (uint k = first; k < next; ++k) order[k].x = photons[order[k].y].place.w;
             sort_order(first, next);
         }
+        for (uint k = first; k < next; ++k) bvh_copy(k, order[k].y);
         first = next;
     }
     if (next != end + 1u) REPORT_UNFINISHED();
+}
+
+KERNEL(bvh_order) {
+    uint count = tree[0].sizes.x;
+    // What the invocation after the next will read: this one's own would come too late.
+    for (uint k = 0u; k < BATCH; ++k) {
+        uint i = batch_item(index + 2u, k);
+        if (i < count) PREFETCH(photons[pairs[i].y]);
+    }
+    for (uint k = 0u; k < BATCH; ++k) {
+        uint i = batch_item(index, k);
+        if (i >= count) continue;
+        uint code = pairs[i].x;
+        if (i > 0u && pairs[i - 1u].x == code) continue;
+        uint end = i + 1u;
+        for (; end < count && pairs[end].x == code; ++end) {}
+        if (end != count && pairs[end].x == code) REPORT_UNFINISHED();
+        if (end == i + 1u) {
+            bvh_copy(i, pairs[i].y);
+        } else if (end - i <= RUN_SHORT) {
+            bvh_short_run(i, end - i);
+        } else {
+            bvh_long_run(i, end);
+        }
+    }
 }
