@@ -34,11 +34,16 @@ KERNEL(kd_tree_count) {
         for (uint k = 0u; k < BATCH; ++k) cells[k] = kd_key_cell(large, cells[k]);
     else
         for (uint k = 0u; k < BATCH; ++k) cells[k] = kd_cell(large, low, vec3(x[k], y[k], z[k]));
+    uint ranks[BATCH];
     for (uint k = 0u; k < BATCH; ++k) PREFETCH(starts[large.cells.x + cells[k]]);
+    for (uint k = 0u; k < BATCH; ++k) {
+        uint i = begin + batch_item(index, k) - chunk * KD_CHUNK;
+        if (i < end) ranks[k] = ATOMIC_ADD_U32(starts[large.cells.x + cells[k]], 1u);
+    }
     for (uint k = 0u; k < BATCH; ++k) {
         uint i = begin + batch_item(index, k) - chunk * KD_CHUNK;
         if (i >= end) continue;
         scratch[2u * i] = large.cells.x + cells[k];
-        scratch[2u * i + 1u] = ATOMIC_ADD_U32(starts[large.cells.x + cells[k]], 1u);
+        scratch[2u * i + 1u] = ranks[k];
     }
 }

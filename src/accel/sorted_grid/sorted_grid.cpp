@@ -34,7 +34,7 @@ class SortedGrid : public PhotonMap {
         run(kCount, {record, photons.photons, starts, ranks}, batches);
         scan(starts, entries + 1);
         run(kScatter, {record, photons.photons, starts, ranks, order}, batches);
-        run(kOrder, {record, photons.photons, starts, places, fluxes, order}, batch_count(entries));
+        run(kOrder, {record, photons.photons, starts, order, ranks, places, fluxes}, batch_count(entries));
     }
     std::vector<BufferHandle> gather_buffers() const override {
         return {kept("grid"), kept("starts"), kept("places"), kept("fluxes")};

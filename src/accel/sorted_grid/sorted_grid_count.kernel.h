@@ -9,6 +9,7 @@ BUFFER_RW(3, uvec2, ranks)
 KERNEL(sorted_grid_count) {
     PhotonGrid g = grid[0];
     uint entries[BATCH];
+    uint counts[BATCH];
     for (uint k = 0u; k < BATCH; ++k) {
         uint i = batch_item(index, k);
         if (i >= g.sizes.x) continue;
@@ -17,6 +18,10 @@ KERNEL(sorted_grid_count) {
     }
     for (uint k = 0u; k < BATCH; ++k) {
         uint i = batch_item(index, k);
-        if (i < g.sizes.x) ranks[i] = uvec2(entries[k], ATOMIC_ADD_U32(starts[entries[k]], 1u));
+        if (i < g.sizes.x) counts[k] = ATOMIC_ADD_U32(starts[entries[k]], 1u);
+    }
+    for (uint k = 0u; k < BATCH; ++k) {
+        uint i = batch_item(index, k);
+        if (i < g.sizes.x) ranks[i] = uvec2(entries[k], counts[k]);
     }
 }

@@ -4,31 +4,48 @@
 BUFFER_RO(0, PhotonGrid, grid)
 BUFFER_RO(1, PhotonRecord, photons)
 BUFFER_RO(2, uint, starts)
-BUFFER_RW(3, uvec4, places)
-BUFFER_RW(4, uvec4, fluxes)
-BUFFER_RW(5, uvec2, order)
+BUFFER_RO(3, uvec2, pairs)  // key, photon
+BUFFER_RW(4, uvec2, order)  // room to sort the pairs of an entry that has many
+BUFFER_RW(5, uvec4, places)
+BUFFER_RW(6, uvec4, fluxes)
 #include "core/kernel/sort.h"
+
+CONST uint ENTRY_SHORT = 64u;  // photons that are sorted in registers
+
+FN void sorted_grid_copy(uint to, uint from) {
+    places[to] = photons[from].place;
+    fluxes[to] = photons[from].flux;
+}
 
 KERNEL(sorted_grid_order) {
     uint entries = grid[0].sizes.y;
-    for (uint ahead = 0u; ahead < BATCH; ++ahead) {
-        uint entry = batch_item(index, ahead);
+    // What the invocation after the next will read: this one's own would come too late.
+    for (uint k = 0u; k < BATCH; ++k) {
+        uint entry = batch_item(index + 2u, k);
         if (entry >= entries) continue;
-        uint end = min(starts[entry + 1u], starts[entry] + 16u);
-        for (uint i = starts[entry]; i < end; ++i) PREFETCH(photons[order[i].y].place);
+        uint end = min(starts[entry + 1u], starts[entry] + ENTRY_SHORT);
+        for (uint i = starts[entry]; i < end; ++i) PREFETCH(photons[pairs[i].y]);
     }
     for (uint k = 0u; k < BATCH; ++k) {
         uint entry = batch_item(index, k);
         if (entry >= entries) continue;
         uint begin = starts[entry];
         uint end = starts[entry + 1u];
-        sort_order(begin, end);
-        uint i = begin;
-        for (; i < end; ++i) {
-            uint photon = order[i].y;
-            places[i] = photons[photon].place;
-            fluxes[i] = photons[photon].flux;
+        if (end - begin <= ENTRY_SHORT) {
+            uint keys[ENTRY_SHORT];
+            for (uint n = 0u; n < end - begin; ++n) keys[n] = pairs[begin + n].x;
+            for (uint n = 0u; n < end - begin; ++n) {
+                uint rank = 0u;
+                for (uint other = 0u; other < end - begin; ++other) rank += keys[other] < keys[n] ? 1u : 0u;
+                sorted_grid_copy(begin + rank, pairs[begin + n].y);
+            }
+            continue;
         }
+        uint i = begin;
+        for (; i < end; ++i) order[i] = pairs[i];
+        if (i != end) REPORT_UNFINISHED();
+        sort_order(begin, end);
+        for (i = begin; i < end; ++i) sorted_grid_copy(i, order[i].y);
         if (i != end) REPORT_UNFINISHED();
     }
 }
