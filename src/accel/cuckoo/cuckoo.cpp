@@ -21,10 +21,10 @@ class Cuckoo : public PhotonMap {
  protected:
     static constexpr const char* kCode = "accel/cuckoo/cuckoo_code.kernel.h";
     static constexpr const char* kOrder = "accel/cuckoo/cuckoo_order.kernel.h";
-    static constexpr const char* kCopy = "accel/cuckoo/cuckoo_copy.kernel.h";
+    static constexpr const char* kList = "accel/cuckoo/cuckoo_list.kernel.h";
     static constexpr const char* kInsert = "accel/cuckoo/cuckoo_insert.kernel.h";
     std::vector<std::string> kernels() const override {
-        return {kCode, kOrder, kCopy, kInsert, kRadixKernels[0], kRadixKernels[1]};
+        return {kCode, kOrder, kList, kInsert, kRadixKernels[0], kRadixKernels[1]};
     }
 
     void construct(const PhotonSet& photons) override {
@@ -41,9 +41,9 @@ class Cuckoo : public PhotonMap {
         const BufferHandle order = sorted == pairs ? other : pairs;
         const uint32_t none = 0;
         runs->upload(&none, 4, size_t(count) * 4);
-        run(kOrder, {arguments, photons.photons, sorted, order, runs}, count);
+        run(kOrder, {arguments, photons.photons, sorted, order, runs, places, fluxes}, batch_count(count));
         scan(runs, count + 1);
-        run(kCopy, {arguments, photons.photons, sorted, order, runs, places, fluxes, cells}, batch_count(count + 1));
+        run(kList, {arguments, sorted, runs, cells}, batch_count(count + 1));
         runs->download(&record.grid.sizes.z, 4, size_t(count) * 4);
         fill_table(record);
     }
