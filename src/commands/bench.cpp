@@ -10,9 +10,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <charconv>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace lampyris {
@@ -86,13 +88,17 @@ int bench(const BenchOptions& options) {
         // For structures that one thread builds.
         const std::unique_ptr<Device> one_thread = backend == "vulkan" ? nullptr : create_device(backend, alone);
         for (const uint32_t count : counts) {
-            const double sort_ns = measure_sort(count, options.settings);
+            // On a device that says nothing of threads: as many as a CPU in its place would have.
+            const unsigned threads =
+                device->threads() ? device->threads() : std::max(1u, std::thread::hardware_concurrency());
+            const double sort_ns = measure_sort(count, threads, options.settings);
             // Anew for each row, since machines are not as fast from one second to the next.
             const auto measure_floors = [&] {
                 PhotonBenchFloors floors;
                 floors.all = measure_floor(*device, count, options.settings);
                 if (one_thread) floors.one_thread = measure_floor(*one_thread, count, options.settings);
-                floors.all.sort_ns = floors.one_thread.sort_ns = sort_ns;
+                floors.all.sort_ns = sort_ns;
+                floors.one_thread.sort_ns = sort_ns * threads;
                 return floors;
             };
             const PhotonBenchFloor floor = measure_floors().all;

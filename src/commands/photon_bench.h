@@ -18,7 +18,7 @@ struct PhotonBenchSettings {
 };
 
 // Nanoseconds per point of work that no structure does without: a record of 16 bytes written to, and a counter incremented at, a
-// random place among as many as there are points; and of a radix sort of 64-bit keys on one thread.
+// random place among as many as there are points; and of a radix sort of 32-bit keys with their indices.
 struct PhotonBenchFloor {
     double scatter_ns = 0, atomic_ns = 0, sort_ns = 0;
     // Of what a structure cannot avoid.
@@ -29,7 +29,7 @@ struct PhotonBenchFloors {
 };
 // All but the sort, which is no device's.
 PhotonBenchFloor measure_floor(Device& device, uint32_t points, const PhotonBenchSettings& settings);
-double measure_sort(uint32_t points, const PhotonBenchSettings& settings);
+double measure_sort(uint32_t points, unsigned threads, const PhotonBenchSettings& settings);
 
 struct PhotonBenchRow {
     std::string structure;  // as asked for
