@@ -20,23 +20,17 @@ FN void bvh_copy(uint to, uint from) {
 FN void bvh_short_run(uint begin, uint count) {
     uint codes[RUN_SHORT];
     uint keys[RUN_SHORT];
-    uint from[RUN_SHORT];
     for (uint n = 0u; n < count; ++n) {
-        uint photon = pairs[begin + n].y;
-        uvec4 place = photons[photon].place;
-        uint code = morton_code(tree[0], place_position(place), 0u);
-        uint hole = n;
-        for (; hole > 0u; --hole) {
-            if (codes[hole - 1u] < code || (codes[hole - 1u] == code && keys[hole - 1u] < place.w)) break;
-            codes[hole] = codes[hole - 1u];
-            keys[hole] = keys[hole - 1u];
-            from[hole] = from[hole - 1u];
-        }
-        codes[hole] = code;
-        keys[hole] = place.w;
-        from[hole] = photon;
+        uvec4 place = photons[pairs[begin + n].y].place;
+        codes[n] = morton_code(tree[0], place_position(place), 0u);
+        keys[n] = place.w;
     }
-    for (uint n = 0u; n < count; ++n) bvh_copy(begin + n, from[n]);
+    for (uint n = 0u; n < count; ++n) {
+        uint rank = 0u;
+        for (uint other = 0u; other < count; ++other)
+            rank += uint(codes[other] < codes[n]) | (uint(codes[other] == codes[n]) & uint(keys[other] < keys[n]));
+        bvh_copy(begin + rank, pairs[begin + n].y);
+    }
 }
 
 FN void bvh_long_run(uint begin, uint end) {
@@ -64,9 +58,9 @@ FN void bvh_long_run(uint begin, uint end) {
 
 KERNEL(bvh_order) {
     uint count = tree[0].sizes.x;
-    // What the invocation after the next will read: this one's own would come too late.
+    // What the fourth invocation from here will read: this one's own would come too late.
     for (uint k = 0u; k < BATCH; ++k) {
-        uint i = batch_item(index + 2u, k);
+        uint i = batch_item(index + 4u, k);
         if (i < count) PREFETCH(photons[pairs[i].y]);
     }
     for (uint k = 0u; k < BATCH; ++k) {
