@@ -102,7 +102,7 @@ PhotonBenchFloor measure_floor(Device& device, uint32_t points, const PhotonBenc
         const KernelHandle kernel = device.compile(file, 0);
         const std::array buffers{count, device.create_buffer(bytes * points, "benchmark")};
         const double seconds =
-            median_seconds(settings, [&] { device.run(*kernel, nullptr, buffers, 0, batch_count(points)); });
+            median_seconds(settings, [&] { device.run(*kernel, nullptr, buffers, 0, span_count(points)); });
         return seconds * 1e9 / points;
     };
     floor.scatter_ns = measure("core/kernel/bench_scatter.kernel.h", 16);

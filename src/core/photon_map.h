@@ -71,6 +71,12 @@ struct ConstructionTraffic {
     bool one_thread = false;
 };
 
+// Invocations of a kernel that handles SPAN batches in each (core/kernel/span.h).
+constexpr uint32_t span_count(uint32_t items) {
+    constexpr uint32_t kSpan = 4;  // SPAN: a divisor of 32, as batch_count() is a multiple
+    return batch_count(items) / kSpan;
+}
+
 struct BucketLoad {
     double mean = 0;  // photons in a bucket that has any
     uint32_t max = 0;

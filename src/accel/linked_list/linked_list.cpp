@@ -29,7 +29,7 @@ class LinkedList : public PhotonMap {
         const BufferHandle links = keep("links", keyed ? count * 8 : 8);
         const BufferHandle nodes = keep("nodes", count * 16);
         clear(heads, size_t(grid.sizes.y) * 4);
-        run(kLink, {record, photons.photons, heads, links, nodes}, batch_count(photons.count));
+        run(kLink, {record, photons.photons, heads, links, nodes}, span_count(photons.count));
         if (!keyed) return;
         run(kOrder, {record, heads, links}, (batch_count(grid.sizes.y) + kSpan - 1) / kSpan);
         run(kPlace, {record, photons.photons, links, nodes}, batch_count(photons.count));

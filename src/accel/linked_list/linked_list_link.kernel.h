@@ -1,5 +1,6 @@
 // Each photon becomes the head of its bucket's chain.
 #include "core/kernel/photon_grid.h"
+#include "core/kernel/span.h"
 
 BUFFER_RO(0, PhotonGrid, grid)  // sizes.z: 1 where chains are to be sorted
 BUFFER_RO(1, PhotonRecord, photons)
@@ -9,22 +10,25 @@ BUFFER_RW(4, uvec4, nodes)  // without `links`: position, link to the next
 
 KERNEL(linked_list_link) {
     PhotonGrid g = grid[0];
-    uint buckets[BATCH];
-    for (uint k = 0u; k < BATCH; ++k) {
-        uint i = batch_item(index, k);
-        if (i >= g.sizes.x) continue;
-        buckets[k] = grid_entry(g, grid_cell(g, place_position(photons[i].place)));
-        PREFETCH(heads[buckets[k]]);
-    }
-    for (uint k = 0u; k < BATCH; ++k) {
-        uint i = batch_item(index, k);
-        if (i >= g.sizes.x) continue;
-        uvec4 place = photons[i].place;
-        uint next = ATOMIC_EXCHANGE_U32(heads[buckets[k]], i + 1u);
-        if (g.sizes.z != 0u) {
-            links[i] = uvec2(place.w, next);
-        } else {
-            nodes[i] = uvec4(place.x, place.y, place.z, next);
+    uint buckets[2u * BATCH];
+    for (uint turn = 0u; turn <= SPAN; ++turn) {
+        for (uint k = 0u; k < BATCH && turn < SPAN; ++k) {
+            uint i = span_item(index, turn, k);
+            if (i >= g.sizes.x) continue;
+            uint bucket = grid_entry(g, grid_cell(g, place_position(photons[i].place)));
+            buckets[span_room(turn, k)] = bucket;
+            PREFETCH(heads[bucket]);
+        }
+        for (uint k = 0u; k < BATCH && turn > 0u; ++k) {
+            uint i = span_item(index, turn - 1u, k);
+            if (i >= g.sizes.x) continue;
+            uvec4 place = photons[i].place;
+            uint next = ATOMIC_EXCHANGE_U32(heads[buckets[span_room(turn - 1u, k)]], i + 1u);
+            if (g.sizes.z != 0u) {
+                links[i] = uvec2(place.w, next);
+            } else {
+                nodes[i] = uvec4(place.x, place.y, place.z, next);
+            }
         }
     }
 }

@@ -31,7 +31,7 @@ class SortedGrid : public PhotonMap {
         const BufferHandle fluxes = keep("fluxes", size_t(photons.count) * 16);
         const uint32_t batches = batch_count(photons.count);
         clear(starts, (size_t(entries) + 1) * 4);
-        run(kCount, {record, photons.photons, starts, ranks}, batches);
+        run(kCount, {record, photons.photons, starts, ranks}, span_count(photons.count));
         scan(starts, entries + 1);
         run(kScatter, {record, photons.photons, starts, ranks, order}, batches);
         run(kOrder, {record, photons.photons, starts, order, ranks, places, fluxes}, batch_count(entries));

@@ -1,4 +1,5 @@
 // How many photons each entry gets, and which of them each photon is (in the order of the machine, which is not fixed).
+#include "core/kernel/span.h"
 #include "accel/sorted_grid/sorted_grid.layout.h"
 
 BUFFER_RO(0, PhotonGrid, grid)
@@ -8,20 +9,24 @@ BUFFER_RW(3, uvec2, ranks)
 
 KERNEL(sorted_grid_count) {
     PhotonGrid g = grid[0];
-    uint entries[BATCH];
+    uint entries[2u * BATCH];
     uint counts[BATCH];
-    for (uint k = 0u; k < BATCH; ++k) {
-        uint i = batch_item(index, k);
-        if (i >= g.sizes.x) continue;
-        entries[k] = sorted_grid_entry(g, grid_cell(g, place_position(photons[i].place)));
-        PREFETCH(starts[entries[k]]);
-    }
-    for (uint k = 0u; k < BATCH; ++k) {
-        uint i = batch_item(index, k);
-        if (i < g.sizes.x) counts[k] = ATOMIC_ADD_U32(starts[entries[k]], 1u);
-    }
-    for (uint k = 0u; k < BATCH; ++k) {
-        uint i = batch_item(index, k);
-        if (i < g.sizes.x) ranks[i] = uvec2(entries[k], counts[k]);
+    for (uint turn = 0u; turn <= SPAN; ++turn) {
+        for (uint k = 0u; k < BATCH && turn < SPAN; ++k) {
+            uint i = span_item(index, turn, k);
+            if (i >= g.sizes.x) continue;
+            uint entry = sorted_grid_entry(g, grid_cell(g, place_position(photons[i].place)));
+            entries[span_room(turn, k)] = entry;
+            PREFETCH(starts[entry]);
+        }
+        // Atomics wait for the stores before them: none lies between.
+        for (uint k = 0u; k < BATCH && turn > 0u; ++k) {
+            if (span_item(index, turn - 1u, k) < g.sizes.x)
+                counts[k] = ATOMIC_ADD_U32(starts[entries[span_room(turn - 1u, k)]], 1u);
+        }
+        for (uint k = 0u; k < BATCH && turn > 0u; ++k) {
+            uint i = span_item(index, turn - 1u, k);
+            if (i < g.sizes.x) ranks[i] = uvec2(entries[span_room(turn - 1u, k)], counts[k]);
+        }
     }
 }

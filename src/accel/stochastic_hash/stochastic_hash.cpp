@@ -64,7 +64,7 @@ class StochasticHash : public PhotonMap {
         clear(table, bytes);
         // A race goes over all numbers of so many bits, those of no photon among them.
         const uint64_t items = params.selection == kRace ? uint64_t(1) << record.options.y : photons.count;
-        run(kernel_file(), {arguments, photons.photons, table}, batch_count(uint32_t(items)));
+        run(kernel_file(), {arguments, photons.photons, table}, span_count(uint32_t(items)));
     }
     std::vector<BufferHandle> gather_buffers() const override {
         return {kept("hash"), kept("table"), photons_.photons};

@@ -43,7 +43,7 @@ class UniformGrid : public PhotonMap {
         const BufferHandle nodes = keep("nodes", drops() ? 16 : size_t(photons.count) * 16);
         const BufferHandle dropped = upload("dropped", uint32_t(0));
         clear(counts, size_t(cells) * 8);
-        run(kStore, {record, photons.photons, counts, slots, keys, nodes, dropped}, batch_count(photons.count));
+        run(kStore, {record, photons.photons, counts, slots, keys, nodes, dropped}, span_count(photons.count));
         run(kOrder, {record, photons.photons, counts, slots, keys, nodes}, batch_count(cells));
         if (!drops()) return;
         uint32_t lost = 0;

@@ -1,4 +1,5 @@
 // Each photon takes the next slot of its cell, or joins the list of those that found none.
+#include "core/kernel/span.h"
 #include "accel/uniform_grid/uniform_grid.layout.h"
 
 BUFFER_RO(0, PhotonGrid, grid)
@@ -11,35 +12,39 @@ BUFFER_RW(6, uint, dropped)
 
 KERNEL(uniform_grid_store) {
     PhotonGrid g = grid[0];
-    uint cells[BATCH];
+    uint cells[2u * BATCH];
     uint ranks[BATCH];
-    for (uint k = 0u; k < BATCH; ++k) {
-        uint i = batch_item(index, k);
-        if (i >= g.sizes.x) continue;
-        cells[k] = uniform_grid_index(g, grid_cell(g, place_position(photons[i].place)));
-        PREFETCH(counts[2u * cells[k]]);
-    }
-    // Atomics wait for the stores before them: none lies between.
-    for (uint k = 0u; k < BATCH; ++k) {
-        uint i = batch_item(index, k);
-        if (i >= g.sizes.x) continue;
-        ranks[k] = ATOMIC_ADD_U32(counts[2u * cells[k]], 1u);
-        uint slot = cells[k] * g.sizes.z + min(ranks[k], g.sizes.z - 1u);
-        PREFETCH(slots[slot]);
-        PREFETCH(keys[slot]);
-    }
-    for (uint k = 0u; k < BATCH; ++k) {
-        uint i = batch_item(index, k);
-        if (i >= g.sizes.x) continue;
-        uvec4 place = photons[i].place;
-        if (ranks[k] < g.sizes.z) {
-            uint slot = cells[k] * g.sizes.z + ranks[k];
-            slots[slot] = uvec4(place.x, place.y, place.z, i);
-            keys[slot] = place.w;
-        } else if (g.sizes.w != 0u) {
-            ATOMIC_ADD_U32(dropped[0], 1u);
-        } else {
-            nodes[i] = uvec4(place.w, ATOMIC_EXCHANGE_U32(counts[2u * cells[k] + 1u], i + 1u), 0u, 0u);
+    for (uint turn = 0u; turn <= SPAN; ++turn) {
+        for (uint k = 0u; k < BATCH && turn < SPAN; ++k) {
+            uint i = span_item(index, turn, k);
+            if (i >= g.sizes.x) continue;
+            uint cell = uniform_grid_index(g, grid_cell(g, place_position(photons[i].place)));
+            cells[span_room(turn, k)] = cell;
+            PREFETCH(counts[2u * cell]);
+        }
+        // Atomics wait for the stores before them: none lies between.
+        for (uint k = 0u; k < BATCH && turn > 0u; ++k) {
+            if (span_item(index, turn - 1u, k) >= g.sizes.x) continue;
+            uint cell = cells[span_room(turn - 1u, k)];
+            ranks[k] = ATOMIC_ADD_U32(counts[2u * cell], 1u);
+            uint slot = cell * g.sizes.z + min(ranks[k], g.sizes.z - 1u);
+            PREFETCH(slots[slot]);
+            PREFETCH(keys[slot]);
+        }
+        for (uint k = 0u; k < BATCH && turn > 0u; ++k) {
+            uint i = span_item(index, turn - 1u, k);
+            if (i >= g.sizes.x) continue;
+            uvec4 place = photons[i].place;
+            uint cell = cells[span_room(turn - 1u, k)];
+            if (ranks[k] < g.sizes.z) {
+                uint slot = cell * g.sizes.z + ranks[k];
+                slots[slot] = uvec4(place.x, place.y, place.z, i);
+                keys[slot] = place.w;
+            } else if (g.sizes.w != 0u) {
+                ATOMIC_ADD_U32(dropped[0], 1u);
+            } else {
+                nodes[i] = uvec4(place.w, ATOMIC_EXCHANGE_U32(counts[2u * cell + 1u], i + 1u), 0u, 0u);
+            }
         }
     }
 }

@@ -1,5 +1,5 @@
 // The benchmark's floor: a counter at a random place, incremented.
-#include "core/kernel/prelude.h"
+#include "core/kernel/span.h"
 #include "core/kernel/layout.h"
 #include "core/kernel/random.h"
 
@@ -8,12 +8,17 @@ BUFFER_RW(1, uint, counters)
 
 KERNEL(bench_atomic) {
     uint count = arguments[0].x;
-    uint places[BATCH];
-    for (uint k = 0u; k < BATCH; ++k) {
-        places[k] = mul_high(hash32(batch_item(index, k)), count);
-        PREFETCH(counters[places[k]]);
-    }
-    for (uint k = 0u; k < BATCH; ++k) {
-        if (batch_item(index, k) < count) ATOMIC_ADD_U32(counters[places[k]], 1u);
+    uint places[2u * BATCH];
+    for (uint turn = 0u; turn <= SPAN; ++turn) {
+        for (uint k = 0u; k < BATCH && turn < SPAN; ++k) {
+            uint place = mul_high(hash32(span_item(index, turn, k)), count);
+            places[span_room(turn, k)] = place;
+            PREFETCH(counters[place]);
+        }
+        for (uint k = 0u; k < BATCH && turn > 0u; ++k) {
+            uint i = span_item(index, turn - 1u, k);
+            uint place = places[span_room(turn - 1u, k)];
+            if (i < count) ATOMIC_ADD_U32(counters[place], 1u);
+        }
     }
 }

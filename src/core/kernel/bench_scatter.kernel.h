@@ -1,5 +1,5 @@
 // The benchmark's floor: a record of 16 bytes written to a random place.
-#include "core/kernel/prelude.h"
+#include "core/kernel/span.h"
 #include "core/kernel/layout.h"
 #include "core/kernel/random.h"
 
@@ -8,13 +8,17 @@ BUFFER_RW(1, uvec4, records)
 
 KERNEL(bench_scatter) {
     uint count = arguments[0].x;
-    uint places[BATCH];
-    for (uint k = 0u; k < BATCH; ++k) {
-        places[k] = mul_high(hash32(batch_item(index, k)), count);
-        PREFETCH(records[places[k]]);
-    }
-    for (uint k = 0u; k < BATCH; ++k) {
-        uint i = batch_item(index, k);
-        if (i < count) records[places[k]] = uvec4(i, places[k], 0u, 0u);
+    uint places[2u * BATCH];
+    for (uint turn = 0u; turn <= SPAN; ++turn) {
+        for (uint k = 0u; k < BATCH && turn < SPAN; ++k) {
+            uint place = mul_high(hash32(span_item(index, turn, k)), count);
+            places[span_room(turn, k)] = place;
+            PREFETCH(records[place]);
+        }
+        for (uint k = 0u; k < BATCH && turn > 0u; ++k) {
+            uint i = span_item(index, turn - 1u, k);
+            uint place = places[span_room(turn - 1u, k)];
+            if (i < count) records[place] = uvec4(i, place, 0u, 0u);
+        }
     }
 }
