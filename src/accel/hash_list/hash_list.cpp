@@ -15,10 +15,10 @@ class HashList : public PhotonMap {
 
  protected:
     static constexpr const char* kInsert = "accel/hash_list/hash_list_insert.kernel.h";
-    static constexpr const char* kOrder = "accel/linked_list/linked_list_order.kernel.h";
+    static constexpr const char* kOrder = "accel/hash_list/hash_list_order.kernel.h";
     static constexpr const char* kPlace = "accel/hash_list/hash_list_place.kernel.h";
-    static constexpr uint32_t kChunk = 4096;  // CHUNK of the first and the last
-    static constexpr uint32_t kSpan = 16;     // CHAIN_SPAN of linked_list_chains.layout.h
+    static constexpr uint32_t kChunk = 4096;   // CHUNK of the first and the last
+    static constexpr uint32_t kSpan = 16 * 8;  // CHAIN_SPAN of linked_list_chains.layout.h, CHUNK of hash_list_order
     std::vector<std::string> kernels() const override { return {kInsert, kOrder, kPlace}; }
 
     void construct(const PhotonSet& photons) override {
