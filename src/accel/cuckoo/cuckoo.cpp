@@ -1,6 +1,7 @@
 #include "core/photon_grid.h"
 #include "accel/cuckoo/cuckoo.params.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lampyris {
@@ -15,8 +16,10 @@ class Cuckoo : public PhotonMap {
  public:
     CuckooParams params;
     PhotonMapCapabilities capabilities() const override { return {.exact = true, .fixed_order = true}; }
-    // The photon, and the entry of a cell that may hold no other.
-    ConstructionTraffic traffic() const override { return {.accesses = 1, .atomics = 1, .sorted_bits = 32}; }
+    // The photon; of the last build, the entry of each cell.
+    ConstructionTraffic traffic() const override {
+        return {.accesses = 1, .atomics = cells_per_photon_, .sorted_bits = 32};
+    }
 
  protected:
     static constexpr const char* kCode = "accel/cuckoo/cuckoo_code.kernel.h";
@@ -45,6 +48,7 @@ class Cuckoo : public PhotonMap {
         scan(runs, count + 1);
         run(kList, {arguments, sorted, runs, cells}, batch_count(count + 1));
         runs->download(&record.grid.sizes.z, 4, size_t(count) * 4);
+        cells_per_photon_ = double(record.grid.sizes.z) / std::max(1.0, double(count));
         fill_table(record);
     }
 
@@ -70,6 +74,9 @@ class Cuckoo : public PhotonMap {
     std::vector<BufferHandle> gather_buffers() const override {
         return {kept("cuckoo"), kept("table"), kept("stash"), kept("cells"), kept("places"), kept("fluxes")};
     }
+
+ private:
+    double cells_per_photon_ = 0;
 };
 
 REGISTER_PHOTON_MAP(Cuckoo, CUCKOO_PARAMS, "cuckoo",
