@@ -273,6 +273,8 @@ void set_parameter(void* target, const ParameterFields& fields, std::string_view
         good = parse_number(value, whole);
         number = double(whole);
     }
+    // Bounds are numbers of the member's type: 0.1 is not below a bound of 0.1f.
+    if (good && field->type == ParameterField::Type::kFloat) number = double(float(number));
     if (!good)
         throw InputError(fmt::format("error: {}: \"{}\" is not {} for \"{}\"", of_what, value,
                                      field->type == ParameterField::Type::kFloat ? "a number" : "a whole number", key));

@@ -77,6 +77,21 @@ TEST(ParameterFields, ChoicesAreNamedAndKeptAsNumbers) {
     EXPECT_NE(message.find("(did you mean \"flux\"?); valid are race, priority, flux"), std::string::npos) << message;
 }
 
+#define BOUNDED_PARAMS(P) P(float, footprint, 2.5f, 0.1f, 0.7f, "bounds that are no numbers in binary")
+PARAMS(BoundedParams, BOUNDED_PARAMS)
+
+TEST(ParameterFields, StatedBoundsAreInside) {
+    const ParameterFields fields = PARAMETER_FIELDS(BoundedParams, BOUNDED_PARAMS);
+    ASSERT_EQ(fields.front().spec.range_text(), "0.1 to 0.7");
+    BoundedParams params{};
+    set_parameter(&params, fields, "footprint", "0.1", "probe");
+    EXPECT_EQ(params.footprint, 0.1f);
+    set_parameter(&params, fields, "footprint", "0.7", "probe");
+    EXPECT_EQ(params.footprint, 0.7f);
+    EXPECT_THROW(set_parameter(&params, fields, "footprint", "0.0999999", "probe"), InputError);
+    EXPECT_THROW(set_parameter(&params, fields, "footprint", "0.7000002", "probe"), InputError);
+}
+
 TEST(PluginChoice, NameAndSettings) {
     const PluginChoice choice = parse_plugin_choice("stochastic_hash:slots=2,load=0.5");
     EXPECT_EQ(choice.name, "stochastic_hash");
