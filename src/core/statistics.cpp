@@ -128,16 +128,24 @@ nlohmann::ordered_json statistics_json(const RunRecord& run, const Scene& scene)
     return result;
 }
 
+namespace {
+
+std::string parameters_text(const std::vector<std::pair<std::string, std::string>>& parameters) {
+    std::string text;
+    for (const auto& [name, value] : parameters) text += fmt::format("{}{}={}", text.empty() ? "" : ",", name, value);
+    return text;
+}
+
+}  // namespace
+
 std::map<std::string, std::string> image_metadata(const RunRecord& run, const Scene& scene) {
-    std::string parameters;
-    for (const auto& [name, value] : run.integrator_parameters)
-        parameters += fmt::format("{}{}={}", parameters.empty() ? "" : ",", name, value);
     return {{"lampyris.version", version()},
             {"lampyris.scene", run.scene},
             {"lampyris.scene_hash", fmt::format("{:016x}", scene.hash)},
             {"lampyris.integrator", run.integrator},
-            {"lampyris.parameters", parameters},
+            {"lampyris.parameters", parameters_text(run.integrator_parameters)},
             {"lampyris.photon_map", run.photon_map.value_or("")},
+            {"lampyris.photon_map_parameters", parameters_text(run.photons.map_parameters)},
             {"lampyris.backend", run.backend},
             {"lampyris.device", run.device},
             {"lampyris.seed", std::to_string(run.seed)},

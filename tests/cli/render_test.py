@@ -48,6 +48,17 @@ def test_every_format_is_written_and_holds_the_same_picture(program, scene, tmp_
     assert struct.unpack(">II", png.read_bytes()[16:24]) == (24, 16)
 
 
+def test_exr_holds_the_parameters_of_the_photon_map(program, scene, tmp_path):
+    exr = tmp_path / "out.exr"
+    choice = "stochastic_hash:slots=2,table_size=0.5"
+    done = run(program, scene, "-o", exr, "--integrator", "sppm", "--photon-map", choice, "--passes", "1")
+    assert done.returncode == 0, done.stderr
+    header = read_exr_header(exr)
+    assert header["lampyris.photon_map"].decode() == "stochastic_hash"
+    parameters = header["lampyris.photon_map_parameters"].decode().split(",")
+    assert {"slots=2", "table_size=0.5"} <= set(parameters)
+
+
 def test_exr_holds_features_and_provenance(program, scene, tmp_path):
     exr = tmp_path / "out.exr"
     assert run(program, scene, "-o", exr, "--seed", "77", "--set", "integrator.maxdepth=2").returncode == 0
