@@ -40,6 +40,20 @@ uint32_t parse_count(const std::string& text) {
     return uint32_t(value);
 }
 
+// The option's commas part structures, and the parameters of one: "a,b:x=1,y=2" is a and b:x=1,y=2.
+std::vector<std::string> join_parameters(const std::vector<std::string>& pieces) {
+    std::vector<std::string> structures;
+    for (const std::string& piece : pieces) {
+        const bool is_parameter = piece.find('=') != std::string::npos && piece.find(':') == std::string::npos;
+        if (is_parameter && !structures.empty() && structures.back().find(':') != std::string::npos) {
+            structures.back() += "," + piece;
+        } else {
+            structures.push_back(piece);
+        }
+    }
+    return structures;
+}
+
 // Every structure but the one that nobody waits for.
 std::vector<std::string> all_structures() {
     std::vector<std::string> names;
@@ -75,7 +89,8 @@ void print_row(const PhotonBenchRow& row) {
 int bench(const BenchOptions& options) {
     check_registrations();
     load_plugins(options.plugins);
-    const std::vector<std::string> structures = options.structures.empty() ? all_structures() : options.structures;
+    const std::vector<std::string> structures =
+        options.structures.empty() ? all_structures() : join_parameters(options.structures);
     for (const std::string& structure : structures) create_photon_map(structure);  // errors before the work
     std::vector<uint32_t> counts;
     for (const std::string& text : options.points) counts.push_back(parse_count(text));
@@ -147,7 +162,7 @@ void add_bench(CLI::App& parent, std::function<int()>& run) {
     command->require_subcommand(1);
     auto options = std::make_shared<BenchOptions>();
     CLI::App* maps = command->add_subcommand("photon-maps", "Photon-query structures: time and memory per photon");
-    maps->add_option("--structures", options->structures, "NAME[:key=value...],... (default: all)")->delimiter(',');
+    maps->add_option("--structures", options->structures, "NAME[:key=value,...],... (default: all)")->delimiter(',');
     maps->add_option("--backend", options->backends, "cpu, cpu-bvh2, vulkan; several joined by commas")
         ->delimiter(',')
         ->capture_default_str();

@@ -58,9 +58,11 @@ def test_json_has_the_keys_of_the_contract(run):
 
 
 def test_table_by_default(run):
-    result = run("bench", "photon-maps", "--structures", "sorted_grid", "--points", "1000", "--seconds", "0")
+    structures = "sorted_grid,stochastic_hash:slots=2,table_size=0.5"
+    result = run("bench", "photon-maps", "--structures", structures, "--points", "1000", "--seconds", "0")
     assert result.returncode == 0, result.stderr
     assert "random scatter" in result.stdout and "sorted_grid" in result.stdout
+    assert "stochastic_hash:slots=2,table_size=0.5" in result.stdout
 
 
 def test_errors_say_what_is_valid(run):
