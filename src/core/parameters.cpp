@@ -130,8 +130,10 @@ const ParameterSpec* find_spec(const ParameterSpecs& specs, std::string_view nam
 
 ParameterReader::ParameterReader(const ParameterSpecs& specs, Entity& entity, Diagnostics& diagnostics)
     : specs_(&specs), entity_(&entity), diagnostics_(&diagnostics) {
+    const std::vector<std::string>& malformed = entity.parameters.malformed;
     for (const ParameterSpec& spec : specs)
-        if (spec.required && !has(spec.name))
+        if (spec.required && !has(spec.name) &&
+            std::find(malformed.begin(), malformed.end(), spec.name) == malformed.end())
             diagnostics.error(
                 entity.location,
                 fmt::format("\"{}\" needs the parameter \"{} {}\"", entity.type, type_name(spec.type), spec.name),

@@ -58,6 +58,8 @@ TEST(SceneMeaning, MeshesMustFit) {
     expect_error("Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"point2 uv\" [ 0 0 1 0 ]", 1, 69,
                  {"\"uv\" has 4 numbers for 3 vertices", "6"});
     expect_error("Shape \"trianglemesh\" \"integer indices\" [ 0 1 2 ]", 1, 1, {"needs the parameter \"point3 P\""});
+    // What is there but cannot be read is reported once, as that.
+    expect_error("Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 ]", 1, 22, {"has 8 numbers", "multiple of 3"});
     expect_error("Shape \"bilinearmesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 1 1 0 ] \"integer indices\" [ 0 1 2 ]", 1, 81,
                  {"4 a face"});
     expect_error("Shape \"loopsubdiv\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 1 1 1 ] \"integer indices\" [ 0 1 2 0 1 3 ]", 1,

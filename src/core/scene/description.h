@@ -55,6 +55,7 @@ inline constexpr std::array<std::string_view, 4> kColorSpaces{"srgb", "rec2020",
 class ParameterList {
  public:
     std::vector<Parameter> parameters;
+    std::vector<std::string> malformed;  // names of those that could not be read, which was reported
 
     const Parameter* find(std::string_view name) const;  // marks as used
     const Parameter* find(std::string_view name, ParameterType type) const;

@@ -92,8 +92,8 @@ std::vector<T> hand_over(std::vector<T>& scratch) {
 
 const char* type_name(ParameterType type) { return info_of(type).name; }
 
-std::vector<Parameter> ParameterParser::parse(Tokenizer& tokenizer, std::string_view color_space) {
-    std::vector<Parameter> parameters;
+void ParameterParser::parse(Tokenizer& tokenizer, std::string_view color_space, ParameterList& list) {
+    std::vector<Parameter>& parameters = list.parameters;
     std::unordered_set<std::string> names;
     while (tokenizer.peek().kind == TokenKind::kString) {
         const Token declaration = tokenizer.next();
@@ -104,7 +104,10 @@ std::vector<Parameter> ParameterParser::parse(Tokenizer& tokenizer, std::string_
             continue;
         }
         old_format_->parameter_name(parameter.name, parameter.location);
-        if (!parse_values(tokenizer, parameter)) continue;
+        if (!parse_values(tokenizer, parameter)) {
+            list.malformed.push_back(parameter.name);
+            continue;
+        }
         constexpr size_t kFew = 16;  // up to here a linear search is cheaper than a set
         bool duplicate = false;
         if (parameters.size() < kFew) {
@@ -121,7 +124,6 @@ std::vector<Parameter> ParameterParser::parse(Tokenizer& tokenizer, std::string_
             parameters.push_back(std::move(parameter));
         tokenizer.release_consumed();
     }
-    return parameters;
 }
 
 bool ParameterParser::parse_declaration(Tokenizer& tokenizer, const Token& token, Parameter& parameter) {

@@ -11,8 +11,8 @@ class ParameterParser {
  public:
     ParameterParser(Diagnostics& diagnostics, OldFormat& old_format)
         : diagnostics_(&diagnostics), old_format_(&old_format) {}
-    // Up to the first token that starts no parameter. What is wrong is reported, and reading goes on behind it.
-    std::vector<Parameter> parse(Tokenizer& tokenizer, std::string_view color_space);
+    // Adds parameters up to the first token that starts none. What is wrong is reported, and reading goes on behind it.
+    void parse(Tokenizer& tokenizer, std::string_view color_space, ParameterList& list);
 
  private:
     bool parse_declaration(Tokenizer& tokenizer, const Token& token, Parameter& parameter);

@@ -78,7 +78,10 @@ void Parser::parse_text(std::string_view text, uint32_t file, const FileText* ma
     Tokenizer* outer = std::exchange(tokenizer_, &tokenizer);
     while (true) {
         const Token token = tokenizer.next();
-        if (token.kind == TokenKind::kEnd) break;
+        if (token.kind == TokenKind::kEnd) {
+            if (!outer) end_ = token.location;
+            break;
+        }
         if (token.kind == TokenKind::kWord)
             run(token);
         else
@@ -155,7 +158,7 @@ bool Parser::read_string(const Token& directive, const char* what, std::string& 
 }
 
 void Parser::read_parameters(ParameterList& list, const Defaults& defaults) {
-    list.parameters = parameter_parser_.parse(*tokenizer_, state_.color_space);
+    parameter_parser_.parse(*tokenizer_, state_.color_space, list);
     if (defaults) list.add_defaults(*defaults);
 }
 
@@ -220,7 +223,7 @@ std::string Parser::place(Location location) const {
 SceneDescription Parser::finish() {
     report_open_blocks(0);
     if (!in_world_ && !diagnostics_->has_errors())
-        diagnostics_->error({}, "the scene ends before WorldBegin", "what is to be seen comes after WorldBegin");
+        diagnostics_->error(end_, "the scene ends before WorldBegin", "what is to be seen comes after WorldBegin");
     resolve_names();
     return std::move(scene_);
 }

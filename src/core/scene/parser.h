@@ -76,6 +76,7 @@ class Parser {
     // Pieces of directives; where they return false, the error is reported and the directive's rest is to be skipped.
     void run(const Token& directive);
     void unexpected(const Token& token);
+    Location end_;                               // of the scene file
     std::string place(Location location) const;  // "file:line:column" for a message
     void defined_twice(const std::string& what, const NameTable::Entry& earlier, Location location);
     void skip_to_directive();
