@@ -14,6 +14,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -32,6 +34,14 @@ struct ChosenIntegrator {
     std::string photon_map = kDefaultPhotonMap;  // of integrators that use one
 };
 
+// Of pbrt-v4's integrators, those that have no namesake here.
+bool is_pbrts(std::string_view name) {
+    constexpr std::array<std::string_view, 9> kNames{"ambientocclusion", "bdpt",          "function",
+                                                     "lightpath",        "mlt",           "randomwalk",
+                                                     "simplepath",       "simplevolpath", "volpath"};
+    return std::find(kNames.begin(), kNames.end(), name) != kNames.end();
+}
+
 // The integrator of the command line, or the scene's; parameters of the scene first, then the command line's.
 ChosenIntegrator choose_integrator(const RenderOptions& options, SceneSettings& settings, Diagnostics& diagnostics) {
     ChosenIntegrator chosen;
@@ -39,6 +49,12 @@ ChosenIntegrator choose_integrator(const RenderOptions& options, SceneSettings& 
     if (!options.integrator.empty()) choice = parse_plugin_choice(options.integrator);
     chosen.name = choice.name.empty() ? settings.integrator.type : choice.name;
     const bool from_scene = choice.name.empty();
+    if (from_scene && !integrators().find(chosen.name) && is_pbrts(chosen.name)) {
+        diagnostics.unsupported(settings.integrator.type_location, fmt::format("integrator \"{}\"", chosen.name),
+                                "\"path\" takes its place if skipped; --integrator NAME chooses another");
+        settings.integrator.parameters = {};
+        chosen.name = "path";
+    }
     if (from_scene && !integrators().find(chosen.name)) {
         const auto [message, hint] = integrators().unknown(chosen.name);
         diagnostics.error(settings.integrator.type_location, message,

@@ -82,6 +82,21 @@ def test_an_unknown_integrator_of_the_scene_is_located(program, scene, tmp_path)
     assert run(program, scene, "-o", tmp_path / "o.exr", "--integrator", "path").returncode == 0
 
 
+def test_what_pbrt_has_and_lampyris_has_not_can_be_skipped(program, scene, tmp_path):
+    scene.write_text(
+        SCENE.replace('Integrator "path"', 'Integrator "bdpt"')
+        .replace('Film "rgb"', 'Film "spectral" "integer nbuckets" 16')
+        .replace('Camera "perspective"', 'Camera "spherical" "string mapping" "equalarea"')
+    )
+    parts = ['integrator "bdpt" is not supported', 'film "spectral" is', 'camera "spherical" is']
+    assert_refused(run(program, scene, "-o", tmp_path / "o.exr"), 1, *parts)
+    stats = tmp_path / "stats.json"
+    done = run(program, scene, "-o", tmp_path / "o.exr", "--skip-unsupported", "--stats", stats)
+    assert done.returncode == 0, done.stderr
+    assert len(stats_of(stats)["unsupported"]) == 3
+    assert stats_of(stats)["integrator"]["name"] == "path"
+
+
 def test_outputs_that_cannot_be_written_are_told_before_rendering(program, scene, tmp_path):
     started = time.monotonic()
     missing = tmp_path / "no-such-folder"

@@ -24,11 +24,18 @@ RegisterSampler::RegisterSampler(const char* name, const char* summary, Paramete
 
 namespace {
 
+// Of pbrt-v4's, those that Lampyris has no plugin for.
+bool is_pbrts(std::string_view type) { return type == "realistic" || type == "spherical" || type == "spectral"; }
+
 // Finds the plugin of a directive that may be absent (then `fallback` holds, as in pbrt-v4) and hands it a reader.
 template <typename Factory, typename Call>
 void build_entity(BuildContext& context, const Registry<Factory>& registry, Entity& entity, const char* fallback,
                   Call&& call) {
-    if (!entity.given()) entity.type = fallback;
+    const bool replaced = entity.given() && is_pbrts(entity.type) && !registry.find(entity.type);
+    if (replaced)
+        context.diagnostics.unsupported(entity.type_location, fmt::format("{} \"{}\"", registry.kind(), entity.type),
+                                        fmt::format("\"{}\" takes its place if skipped", fallback));
+    if (!entity.given() || replaced) entity.type = fallback;
     const Factory* factory = registry.find(entity.type);
     if (!factory) {
         const auto [message, hint] = registry.unknown(entity.type);
@@ -37,6 +44,7 @@ void build_entity(BuildContext& context, const Registry<Factory>& registry, Enti
     }
     ParameterReader reader(registry.find_info(entity.type)->parameters, entity, context.diagnostics);
     call(*factory, reader);
+    if (replaced) return;  // its own parameters were meant for the other
     reader.finish(fmt::format("{} \"{}\"", registry.kind(), entity.type));
 }
 
