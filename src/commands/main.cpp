@@ -33,6 +33,20 @@ void check_command_name(const CLI::App& app, int argc, char** argv) {
                                  did_you_mean(argv[1], names), list_of(names)));
 }
 
+// What an option that nobody knows was meant to be, if there is one and it is near.
+std::string near_option(const CLI::App& app) {
+    for (const std::string& text : app.remaining(true)) {
+        if (!text.starts_with("--")) continue;
+        std::vector<std::string> names;
+        const CLI::App* command = &app;
+        while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
+        for (const CLI::Option* option : command->get_options())
+            for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+        return did_you_mean(text.substr(0, text.find('=')), names);
+    }
+    return {};
+}
+
 int run_command_line(int argc, char** argv) {
     CLI::App app("Lampyris, a laboratory for light transport.", "lampyris");
     app.set_version_flag("--version", fmt::format("lampyris {}", version()));
@@ -46,7 +60,9 @@ int run_command_line(int argc, char** argv) {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         // Help and version are no errors; every real one is a wrong argument.
-        return app.exit(error) == 0 ? int(ExitCode::kDone) : int(ExitCode::kBadInput);
+        if (error.get_exit_code() == 0) return app.exit(error);
+        throw InputError(
+            fmt::format("lampyris: error: {}{}; --help lists what there is", error.what(), near_option(app)));
     }
     const int code = run();
     // A result that could not be written (a full disk, say) must not look like success.
@@ -57,7 +73,9 @@ int run_command_line(int argc, char** argv) {
 
 int report(const std::string& message, ExitCode code) {
     std::fflush(stdout);
-    fmt::print(stderr, "{}\n", message);
+    // What libraries and files have to say does not know that it is one.
+    const bool says_so = message.find("error: ") != std::string::npos;
+    fmt::print(stderr, "{}{}\n", says_so ? "" : "lampyris: error: ", message);
     return int(code);
 }
 

@@ -38,7 +38,7 @@ double parse_duration(const std::string& text) {
 uint64_t parse_size(const std::string& text) {
     double value = 0.0;
     std::string unit;
-    if (leading_number(text, value, unit) && value < 1e15) {
+    if (leading_number(text, value, unit) && value > 0.0 && value < 1e15) {
         if (unit.empty() || unit == "B") return uint64_t(value);
         if (unit == "K" || unit == "k") return uint64_t(value * 1024.0);
         if (unit == "M") return uint64_t(value * 1048576.0);
@@ -100,6 +100,7 @@ void RenderOptions::finish() {
         limits.passes = limits.passes ? std::min(*limits.passes, uint64_t(*count)) : uint64_t(*count);
     }
     if (texts.spp) eye_samples = uint32_t(std::min<int64_t>(*texts.spp, std::numeric_limits<uint32_t>::max()));
+    if (!std::isfinite(write.exposure)) throw InputError("error: --exposure must be a number of stops");
     if (texts.target_error) {
         if (!(*texts.target_error > 0.0)) throw InputError("error: --target-error must be above 0");
         limits.target_error = texts.target_error;

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace lampyris {
 namespace {
 
@@ -29,6 +31,14 @@ BackendRegistration::BackendRegistration(const char* name, const char* summary,
                                          std::function<std::unique_ptr<Device>(const DeviceOptions&)> create,
                                          std::function<std::vector<DeviceInfo>()> list) {
     backends().insert_or_assign(name, Backend{name, summary, std::move(create), std::move(list)});
+}
+
+void check_settings(const std::string& backend, const DeviceOptions& options, const std::vector<std::string>& known) {
+    for (const auto& [key, value] : options.settings)
+        if (std::find(known.begin(), known.end(), key) == known.end())
+            throw InputError(fmt::format("error: backend {} has no setting \"{}\"{}; {}", backend, key,
+                                         did_you_mean(key, known),
+                                         known.empty() ? "it has none" : "settings are " + list_of(known)));
 }
 
 std::unique_ptr<Device> create_device(const std::string& backend, const DeviceOptions& options) {

@@ -120,6 +120,9 @@ struct BackendRegistration {
                         std::function<std::vector<DeviceInfo>()> list);
 };
 
+// For backends: throws InputError for a setting that is not among those that they have.
+void check_settings(const std::string& backend, const DeviceOptions& options, const std::vector<std::string>& known);
+
 // Throws InputError for an unknown backend (with the list), MachineError where it has no device.
 std::unique_ptr<Device> create_device(const std::string& backend, const DeviceOptions& options = {});
 std::vector<std::string> backend_names();

@@ -314,6 +314,8 @@ std::vector<std::pair<std::string, std::string>> parse_settings(std::string_view
         const size_t equals = item.find('=');
         if (equals == std::string_view::npos || equals == 0)
             throw InputError(fmt::format("error: \"{}\" is not of the form key=value", item));
+        for (const auto& [key, value] : settings)
+            if (key == item.substr(0, equals)) throw InputError(fmt::format("error: \"{}\" is set twice", key));
         settings.emplace_back(item.substr(0, equals), item.substr(equals + 1));
         if (comma == std::string_view::npos) break;
         text.remove_prefix(comma + 1);

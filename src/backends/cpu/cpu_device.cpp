@@ -97,6 +97,7 @@ class CpuDevice final : public Device {
  public:
     CpuDevice(CpuTracerKind tracer, const DeviceOptions& options)
         : tracer_(tracer), meter_(std::make_shared<MemoryMeter>()) {
+        check_settings(backend(), options, {});
         meter_->limit = options.max_memory;
         if (!options.device.empty() && options.device != "0" && description().find(options.device) == std::string::npos)
             throw InputError(fmt::format("error: --device {}: the CPU backends have one device: 0, {}", options.device,

@@ -23,14 +23,9 @@ class VulkanDevice final : public Device {
         : context_(std::make_shared<Context>(options)),
           account_(std::make_shared<MemoryAccount>()),
           cache_(cache_folder(options)) {
-        for (const auto& [key, value] : options.settings) {
-            static const std::vector<std::string> known{"cache",      "optimize", "precise",    "ray_query",
-                                                        "specialise", "staging",  "validation", "workgroup"};
-            if (std::find(known.begin(), known.end(), key) == known.end()) {
-                throw InputError(fmt::format("error: backend vulkan has no setting \"{}\"{}; settings are {}", key,
-                                             did_you_mean(key, known), list_of(known)));
-            }
-        }
+        check_settings(
+            "vulkan", options,
+            {"cache", "optimize", "precise", "ray_query", "specialise", "staging", "validation", "workgroup"});
         account_->limit = options.max_memory;
         shader_options_.precise = read_switch(options, "precise", Switch::on) != Switch::off;
         shader_options_.optimize = read_switch(options, "optimize", Switch::on) != Switch::off;

@@ -62,6 +62,7 @@ void build_film(FilmContext& film) {
                  crop[1] >= crop[3])) {
         const std::string message = fmt::format("the pixels {},{} to {},{} are not a part of the {}x{} picture",
                                                 crop[0], crop[1], crop[2], crop[3], size[0], size[1]);
+        if (build.options.crop) throw InputError("error: --crop: " + message);
         build.diagnostics.error(where, message, "the window must not be empty, nor larger than the picture");
         crop = {0, 0, size[0], size[1]};
     }
