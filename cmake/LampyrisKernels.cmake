@@ -97,6 +97,7 @@ function(lampyris_kernel_units target out KERNEL_FILE file)
   endif()
   # What traces no rays is built once, for both tracers: gather kernels, and those that do not read the scene.
   file(STRINGS ${file} scene REGEX "^#include \"(core/kernel/(scene|trace)\\.h|.*\\.kernel\\.h)\"")
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})  # what was read here may change
   set(tracers embree bvh2)
   if(NOT scene OR KERNEL_FILE MATCHES "\\+")
     set(tracers any)
