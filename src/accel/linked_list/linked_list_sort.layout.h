@@ -8,6 +8,7 @@ FN uint chain_merge_sort(uint first) {
     uint head = first;
     uint width = 1u;
     uint merges = 2u;
+    bool cut = false;  // a loop that the driver ended: the chain is neither sorted nor whole
     uint level = 0u;
     for (; level < 32u && merges > 1u; ++level) {
         uint rest = head;
@@ -20,6 +21,7 @@ FN uint chain_merge_sort(uint first) {
             uint right = rest;
             uint left_count = 0u;
             for (; left_count < width && right != 0u; ++left_count) right = links[right - 1u].y;
+            cut = cut || (left_count < width && right != 0u);
             uint right_count = width;
             while (left_count > 0u || (right_count > 0u && right != 0u)) {
                 bool from_left = left_count > 0u;
@@ -39,12 +41,14 @@ FN uint chain_merge_sort(uint first) {
                 }
                 tail = taken;
             }
+            cut = cut || left_count > 0u || (right_count > 0u && right != 0u);
             rest = right;
         }
+        cut = cut || rest != 0u;
         if (tail != 0u) links[tail - 1u].y = 0u;
         width = width * 2u;
     }
-    if (merges > 1u) REPORT_UNFINISHED();
+    if (cut || merges > 1u) REPORT_UNFINISHED();
     return head;
 }
 
