@@ -154,7 +154,8 @@ TEST(SceneMeaning, FilmsAndCameras) {
               std::string::npos);
     EXPECT_NE(errors("Film \"rgb\" \"float cropwindow\" [ 0.5 0.5 0 1 ]").find("not a part of the 1280x720 picture"),
               std::string::npos);
-    EXPECT_NE(errors("Camera \"realistic\"").find("unknown camera \"realistic\""), std::string::npos);
+    EXPECT_NE(errors("Camera \"relistic\"").find("unknown camera \"relistic\""), std::string::npos);
+    EXPECT_NE(errors("Camera \"realistic\"").find("camera \"realistic\" is not supported"), std::string::npos);
     EXPECT_NE(errors("Camera \"perspective\" \"float fov\" 180").find("must be above 0 to 179.9"), std::string::npos);
     EXPECT_NE(errors("Sampler \"random\"").find("unknown sampler \"random\""), std::string::npos);
     EXPECT_NE(errors("PixelFilter \"gausian\"").find("did you mean"), std::string::npos);
