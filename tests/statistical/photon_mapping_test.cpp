@@ -171,7 +171,7 @@ TEST(PhotonMappingDeterminism, ThreadsChangeNothing) {
             }
         }
     }
-    EXPECT_GT(compared, 8);
+    EXPECT_GE(compared, 8);
 }
 
 // A store that is too small is filled several times; nothing is dropped.
