@@ -11,12 +11,13 @@ def statistics(program, folder, photons, passes):
     scene = folder / "scene.pbrt"
     scene.write_text(
         """
-        LookAt 0 -3 1  0 0 0.5  0 0 1
+        LookAt 0 -1.9 0  0 2 0  0 0 1
+        Camera "perspective" "float fov" 150
         Film "rgb" "integer xresolution" 64 "integer yresolution" 64
         WorldBegin
-        LightSource "point" "point3 from" [ 0 0 2 ] "rgb I" [ 1 1 1 ]
-        Shape "trianglemesh" "point3 P" [ -2 -2 0  2 -2 0  2 2 0  -2 2 0 ] "integer indices" [ 0 1 2 0 2 3 ]
-        Shape "trianglemesh" "point3 P" [ -2 2 0  2 2 0  2 2 2  -2 2 2 ] "integer indices" [ 0 1 2 0 2 3 ]
+        LightSource "point" "rgb I" [ 1 1 1 ]
+        Material "diffuse" "rgb reflectance" [ 0.5 0.5 0.5 ]
+        Shape "sphere" "float radius" 2
         """
     )
     stats = folder / "stats.json"
@@ -32,6 +33,7 @@ def grown(program, folder, photons, passes):
     few = statistics(program, folder, photons, 3)
     many = statistics(program, folder, photons, passes)
     assert many["photons_emitted"] == photons * passes
+    assert many["photons_stored"] > many["photons_emitted"]
     return many["peak_memory_bytes"] / few["peak_memory_bytes"], many
 
 
