@@ -23,9 +23,15 @@ ProgressDisplay::ProgressDisplay(bool quiet, BudgetLimits limits)
 std::string ProgressDisplay::error_text(const RenderProgress& progress) {
     if (!std::isfinite(progress.estimated_error)) return "error not known yet";
     if (progress.estimated_error == 0.0) return "no variance seen";
-    // The variance of a mean falls as 1/N: half the relMSE takes as much work again as was spent so far.
-    return fmt::format("relMSE about {:.2e} (estimated), halving it costs another {}", progress.estimated_error,
-                       duration_text(progress.wall_s));
+    const ErrorForecast& forecast = progress.forecast;
+    const double percent = 100.0 * ErrorForecast::kConfidence;
+    const std::string error = fmt::format("estimated relMSE {:.2e}, ", progress.estimated_error);
+    if (std::isfinite(forecast.high_s))
+        return error + fmt::format("halving it takes {} to {} more ({:.0f} %)", duration_text(forecast.low_s),
+                                   duration_text(forecast.high_s), percent);
+    if (std::isfinite(forecast.low_s))
+        return error + fmt::format("halving it takes {} more at least", duration_text(forecast.low_s));
+    return error + "no telling yet what halving it takes";
 }
 
 double ProgressDisplay::share_done(const RenderProgress& progress) const {
@@ -44,7 +50,8 @@ void ProgressDisplay::show(const RenderProgress& progress) {
     const double rate = progress.wall_s > 0.0 ? double(progress.samples) / progress.wall_s : 0.0;
     const double left = share > 0.0 ? progress.wall_s * (1.0 - share) / share : 0.0;
     const std::string line = fmt::format("{:3.0f} %  {} passes  {:.2f} Msamples/s  {} left  {}", share * 100.0,
-                                         progress.passes, rate * 1e-6, duration_text(left), error_text(progress));
+                                         progress.passes, rate * 1e-6, duration_text(left), error_text(progress)) +
+                             (progress.unstable.empty() ? "" : fmt::format("; unstable: {}", progress.unstable));
     if (terminal_) {
         constexpr int kWidth = 20;
         const int filled = static_cast<int>(std::lround(share * kWidth));

@@ -11,7 +11,7 @@ class ProgressDisplay {
  public:
     ProgressDisplay(bool quiet, BudgetLimits limits);
     void show(const RenderProgress& progress);
-    // "relMSE about 1.2e-03 (estimated); halving it costs another 12 s"
+    // "estimated relMSE 1.2e-03, halving it takes 12.1 s to 18.0 s more (90 %)"
     static std::string error_text(const RenderProgress& progress);
 
  private:

@@ -94,6 +94,14 @@ ChosenIntegrator choose_integrator(const RenderOptions& options, SceneSettings& 
     return chosen;
 }
 
+// Radii that stay as they are leave a bias that no pass takes away: alpha is 1 there.
+ErrorRate error_rate(const ChosenIntegrator& chosen) {
+    if (!chosen.integrator->uses_photon_map()) return ErrorRate::of_samples();
+    for (const auto& [name, value] : show_parameters(chosen.integrator->parameters(), *chosen.fields))
+        if (name == "alpha") return ErrorRate::of_photons(std::stod(value));
+    return ErrorRate::of_photons(1.0);
+}
+
 std::vector<std::string> choose_outputs(const RenderOptions& options, const SceneSettings& settings) {
     std::vector<std::string> outputs = options.outputs;
     if (outputs.empty() && !options.replay) {
@@ -109,6 +117,8 @@ void print_summary(const RunRecord& run, const std::vector<std::string>& outputs
                run.progress.passes, duration_text(run.progress.wall_s), duration_text(run.total_s),
                run.progress.wall_s > 0.0 ? double(run.film.rays) / run.progress.wall_s * 1e-6 : 0.0, run.backend);
     fmt::print("{}\n", ProgressDisplay::error_text(run.progress));
+    if (!run.progress.unstable.empty())
+        fmt::print("the error estimate is unstable, the true error may be much larger: {}\n", run.progress.unstable);
     if (run.film.non_finite > 0)
         fmt::print(stderr,
                    "warning: {} samples were not finite and are left out; the first one is sample {} of pixel ({}, "
@@ -189,13 +199,19 @@ int render(const RenderOptions& options) {
     if (options.replay) limits = {1, {}, {}};
     RenderSession session(*device, built.scene, device_scene, film, limits);
     session.photon_map = chosen.photon_map;
+    session.error_rate = error_rate(chosen);
     if (fixed_eye_samples) session.eye_samples = options.eye_samples.value_or(1);
     session.seed = options.seed.value_or(built.settings.seed);
     session.sampler = built.settings.sampler == "independent" ? kernel::SAMPLER_INDEPENDENT : kernel::SAMPLER_SOBOL;
     if (options.replay) session.start_at(uint64_t((*options.replay)[2]));
     ProgressDisplay display(options.quiet || options.replay.has_value(), limits);
     session.on_progress = [&](const RenderProgress& progress, const Film& current) {
-        ConvergencePoint point{progress.wall_s, progress.passes, progress.estimated_error, {}};
+        ConvergencePoint point{progress.wall_s,
+                               progress.passes,
+                               progress.estimated_error,
+                               progress.forecast,
+                               !progress.unstable.empty(),
+                               {}};
         if (reference) point.against_reference = measure(current.rgb(), *reference);
         run.convergence.push_back(point);
         display.show(progress);

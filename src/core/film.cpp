@@ -8,8 +8,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 namespace lampyris {
 namespace {
@@ -33,6 +35,17 @@ std::array<Estimate, 3> estimates(const kernel::FilmPixel& p) {
     return {estimate(double(p.sum.x) + double(p.low.x), p.squares.x, weight, n),
             estimate(double(p.sum.y) + double(p.low.y), p.squares.y, weight, n),
             estimate(double(p.sum.z) + double(p.low.z), p.squares.z, weight, n)};
+}
+
+// The share of a sum that the largest 0.1 % of its terms make; 0 where the sum is not known, or none.
+double share_of_largest(std::vector<float> terms) {
+    double sum = 0.0, largest = 0.0;
+    for (const float term : terms) sum += double(term);
+    if (!(sum > 0.0)) return 0.0;
+    const size_t count = (terms.size() + 999) / 1000;
+    std::nth_element(terms.begin(), terms.begin() + ptrdiff_t(count - 1), terms.end(), std::greater<>());
+    for (size_t i = 0; i < count; ++i) largest += double(terms[i]);
+    return largest / sum;
 }
 
 // |z| that a standard normal variable stays below with the given probability: by bisection on erf.
@@ -78,6 +91,8 @@ FilmSummary Film::summary() const {
     FilmSummary result;
     result.min_samples = std::numeric_limits<uint32_t>::max();
     double error = 0.0, bias_squared = 0.0;
+    uint64_t lit = 0, dark = 0;
+    std::vector<float> errors(pixels_.size());
     for (size_t i = 0; i < pixels_.size(); ++i) {
         const kernel::FilmPixel& p = pixels_[i];
         result.samples += p.counts.x;
@@ -89,7 +104,14 @@ FilmSummary Film::summary() const {
                                        p.counts.w};
         result.non_finite += p.counts.z;
         const std::array<Estimate, 3> radiance = estimates(p);
-        for (const Estimate& e : radiance) error += e.variance / (e.mean * e.mean + 0.01);
+        double of_pixel = 0.0;
+        for (const Estimate& e : radiance) of_pixel += e.variance / (e.mean * e.mean + 0.01);
+        error += of_pixel;
+        errors[i] = float(of_pixel);
+        const bool sees_surface = p.albedo.x > 0.0f || p.albedo.y > 0.0f || p.albedo.z > 0.0f;
+        const bool has_light = p.squares.x > 0.0f || p.squares.y > 0.0f || p.squares.z > 0.0f;
+        lit += sees_surface && has_light;
+        dark += sees_surface && !has_light;
         if (!bias_buffer_) continue;
         const std::array<Estimate, 3> bias = bias_estimates(i);
         // The square of a noisy estimate is too large by its variance; what is left may be negative here and there.
@@ -99,6 +121,9 @@ FilmSummary Film::summary() const {
     }
     if (bias_squared > 0.0) error += bias_squared;
     result.estimated_relmse = error / (3.0 * double(pixels_.size()));
+    result.health.min_samples = result.min_samples;
+    result.health.dark_share = lit + dark > 0 ? double(dark) / double(lit + dark) : 0.0;
+    result.health.largest_share = share_of_largest(std::move(errors));
     return result;
 }
 

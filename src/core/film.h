@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/device.h"
+#include "core/forecast.h"
 #include "core/image/image.h"
 #include "core/kernel_types.h"
 #include "core/scene/scene.h"
@@ -20,6 +21,7 @@ struct FilmSummary {
     // Estimated relMSE: the mean over pixels and channels of (Var(mean) + bias^2) / (mean^2 + 0.01). Samples count as independent,
     // which overstates the error of a stratified sampler. The bias is that of attach_bias, else 0. NaN below two samples a pixel.
     double estimated_relmse = 0.0;
+    EstimateHealth health;  // whether that can be trusted
 };
 
 struct ChannelEstimate {

@@ -34,6 +34,7 @@ RenderSession::RenderSession(Device& device_, const Scene& scene_, DeviceSceneHa
                              BudgetLimits limits)
     : device(device_), scene(scene_), device_scene(std::move(device_scene_)), film(film_), limits_(limits) {
     progress_.estimated_error = std::numeric_limits<double>::quiet_NaN();
+    progress_.forecast = forecast_halving({}, error_rate);
 }
 
 uint32_t RenderSession::next_passes() {
@@ -72,6 +73,9 @@ void RenderSession::passes_finished(uint32_t count) {
     film.download();
     const FilmSummary summary = film.summary();
     progress_.estimated_error = summary.estimated_relmse;
+    history_.push_back({progress_.passes, progress_.wall_s, summary.estimated_relmse});
+    progress_.forecast = forecast_halving(history_, error_rate);
+    progress_.unstable = why_unstable(summary.health, history_, error_rate);
     progress_.rays = summary.rays;
     progress_.samples = summary.samples;
     // A handful of samples cannot vouch for an error.

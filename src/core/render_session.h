@@ -3,6 +3,7 @@
 
 #include "core/device.h"
 #include "core/film.h"
+#include "core/forecast.h"
 #include "core/scene/scene.h"
 
 #include <chrono>
@@ -27,6 +28,8 @@ struct RenderProgress {
     uint64_t passes = 0;
     double wall_s = 0.0;           // spent rendering: without set-up, and without looking at the film
     double estimated_error = 0.0;  // estimated relMSE; NaN where it is not known yet
+    ErrorForecast forecast{};      // what halving it takes
+    std::string unstable;          // why the estimate cannot be trusted; empty where nothing speaks against it
     uint64_t rays = 0, samples = 0;
     bool finished = false;
 };
@@ -56,6 +59,7 @@ class RenderSession {
     uint32_t eye_samples = 1;  // a pixel, of integrators that fix them
     std::string photon_map;    // NAME[:key=value,...]; of integrators that use one
     PhotonStatistics photons;
+    ErrorRate error_rate = ErrorRate::of_samples();  // what theory says of the integrator
 
     // How many passes to run next, beginning with number next_pass(): 0 when the budget is spent or the user
     // interrupts. Slices last a fraction of a second where passes are that short, and end at powers of two.
@@ -80,6 +84,7 @@ class RenderSession {
     using Clock = std::chrono::steady_clock;
     BudgetLimits limits_;
     RenderProgress progress_;
+    std::vector<ErrorPoint> history_;  // what each look at the film saw
     std::map<std::string, double> phases_;
     Clock::time_point slice_start_{};
     uint64_t first_pass_ = 0;

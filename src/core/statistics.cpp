@@ -20,11 +20,19 @@ Json parameters_json(const std::vector<std::pair<std::string, std::string>>& par
     return object;
 }
 
+void add_forecast(Json& object, const ErrorForecast& forecast, bool unstable) {
+    object["halving_s"] = number(forecast.halving_s);
+    object["halving_low_s"] = number(forecast.low_s);
+    object["halving_high_s"] = number(forecast.high_s);
+    object["estimate_unstable"] = unstable;
+}
+
 Json convergence_json(const std::vector<ConvergencePoint>& points) {
     Json array = Json::array();
     for (const ConvergencePoint& point : points) {
         Json entry = {
             {"wall_s", point.wall_s}, {"passes", point.passes}, {"estimated_error", number(point.estimated_error)}};
+        add_forecast(entry, point.forecast, point.unstable);
         if (point.against_reference)
             for (const MetricFormula& formula : metric_formulas())
                 entry[formula.key] = number((*point.against_reference).*(formula.value));
@@ -121,6 +129,7 @@ nlohmann::ordered_json statistics_json(const RunRecord& run, const Scene& scene)
         {"convergence", convergence_json(run.convergence)},
         {"interrupted", run.interrupted},
     };
+    add_forecast(result, run.progress.forecast, !run.progress.unstable.empty());
     if (run.film.non_finite > 0)
         result["first_non_finite"] = {{"x", run.film.first_non_finite[0]},
                                       {"y", run.film.first_non_finite[1]},

@@ -23,6 +23,8 @@ struct ConvergencePoint {
     double wall_s = 0.0;
     uint64_t passes = 0;
     double estimated_error = 0.0;
+    ErrorForecast forecast{};
+    bool unstable = false;
     std::optional<Metrics> against_reference;
 };
 
