@@ -1,0 +1,153 @@
+"""What the targets of this experiment share: parameters of methods, repeated timings, verdicts, data and pictures."""
+
+import csv
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+from lab.catalogue import Scene
+from lab.images import encode, exposure_of, reference_error
+from lab.runs import Run
+from lab.sections import Download
+from lab.store import Store
+from lab.target import Plan
+
+SOURCE = "Hachisuka and Jensen, Parallel Progressive Photon Mapping on GPUs (SIGGRAPH Asia 2010 sketch)"
+# A pass in the paper's parts: the phases of `render --stats` that each is made of.
+STEPS = {
+    "photon tracing": ("photon_tracing",),
+    "construction": ("construction",),
+    "gathering": ("gathering", "final_gather"),
+    "eye pass and resolve": ("eye_pass", "resolve"),
+}
+
+
+def with_parameters(words: str, **parameters) -> str:
+    """An integrator or photon map as the command line has it, with more parameters."""
+    for key, value in parameters.items():
+        words += f"{',' if ':' in words else ':'}{key}={value}"
+    return words
+
+
+def judge(passed: Iterable[bool]) -> str:
+    """What a verdict says when these criteria were looked at: all hold, some, none, or there was nothing to look at."""
+    passed = list(passed)
+    if not passed:
+        return "not tested"
+    return "yes" if all(passed) else "partly" if any(passed) else "no"
+
+
+def is_software(device: str) -> bool:
+    """Whether a Vulkan device is the processor itself, by its name."""
+    return any(word in device.lower() for word in ("llvmpipe", "lavapipe", "swiftshader"))
+
+
+def what_failed(record: dict) -> str:
+    """The last line of why a run could not be made, or an empty string."""
+    return (record.get("failed", "").strip().splitlines() or [""])[-1]
+
+
+@dataclass
+class Timing:
+    """Seconds a pass over repeats of one run: (median, smallest, largest) of the whole and of each step."""
+
+    runs: list[str]
+    failed: str = ""
+    device: str = ""
+    passes: int = 0
+    total: tuple[float, float, float] | None = None
+    steps: dict[str, tuple[float, float, float]] = field(default_factory=dict)
+
+    def median(self, step: str) -> float | None:
+        """Of a step, or of "total"; None where it is not known."""
+        told = self.total if step == "total" else self.steps.get(step)
+        return told[0] if told else None
+
+
+def timing_of(store: Store, runs: list[Run]) -> Timing:
+    """The timing of runs that differ in `repeat` alone."""
+    records = [store.record(run) for run in runs]
+    timing = Timing([store.key(run) for run in runs], next(filter(None, map(what_failed, records)), ""))
+    statistics = [record["statistics"] for record in records if "statistics" in record]
+    if not statistics:
+        return timing
+    timing.device, timing.passes = statistics[0]["device"], statistics[0]["passes"]
+    timing.total = _spread([one["wall_s"] / one["passes"] for one in statistics])
+    for step, phases in STEPS.items():
+        seconds = [_seconds(one, phases) for one in statistics]
+        if None not in seconds:
+            timing.steps[step] = _spread(seconds)
+    return timing
+
+
+def _seconds(statistics: dict, phases: tuple[str, ...]) -> float | None:
+    told = [statistics["phases"][name] for name in phases if (statistics.get("phases") or {}).get(name) is not None]
+    return sum(told) / statistics["passes"] if told else None
+
+
+def _spread(values: list[float]) -> tuple[float, float, float]:
+    return float(np.median(values)), min(values), max(values)
+
+
+def ratio(slow: float | None, fast: float | None) -> float | None:
+    """How many times as long; None where either is not known."""
+    return slow / fast if slow is not None and fast else None
+
+
+def times(value: float | None) -> str:
+    """A ratio in words."""
+    return "not known" if value is None else f"{value:.3g} times"
+
+
+def range_of(values: Iterable[float | None]) -> str:
+    """From the smallest to the largest ratio, in words."""
+    known = [value for value in values if value is not None]
+    if not known:
+        return "not known"
+    low, high = f"{min(known):.3g}", f"{max(known):.3g}"
+    return f"{low} times" if low == high else f"{low} to {high} times"
+
+
+def write_csv(path: Path, rows: list[dict]) -> Download:
+    """The data of a figure; the columns are the keys of the rows, lists of run keys joined by spaces."""
+    columns = list(dict.fromkeys(key for row in rows for key in row))
+    with path.open("w", newline="") as file:
+        writer = csv.DictWriter(file, columns)
+        writer.writeheader()
+        for row in rows:
+            writer.writerow({key: " ".join(value) if isinstance(value, list) else value for key, value in row.items()})
+    return Download(path.name, f"{path.stem.replace('_', ' ')} (CSV)")
+
+
+def reference_text(scene: Scene, store: Store) -> str:
+    """By whom a scene's reference is, and how wrong it is itself."""
+    reference = scene.reference
+    told = reference_error(reference, store)
+    error = "its own relMSE is not known"
+    if told["relmse"] is not None:
+        error = f"its own relMSE is {told['relmse']:.2g} ({told['how']})"
+    dependent = "" if reference.independent else "; it is not independent of the methods that map photons"
+    return f"The reference of “{scene.title}” is by {reference.by}; {error}{dependent}."
+
+
+def show_picture(axes, image: np.ndarray, title: str, exposure: float | None = None) -> None:
+    """An image of scene-linear light on matplotlib's axes, without a frame."""
+    axes.imshow(encode(image, exposure_of(image) if exposure is None else exposure), interpolation="nearest")
+    axes.set_title(title, fontsize=7)
+    axes.set_axis_off()
+
+
+def structure_name(method_name: str) -> str:
+    """The structure of INTEGRATOR+STRUCTURE."""
+    return method_name.partition("+")[2]
+
+
+def timed_run(plan: Plan, scene: Scene, method, backend: str, **changes) -> Run:
+    """A run whose time counts, of a few passes of equal work: radii shrink by the number of the pass alone.
+
+    Targets that ask for the same scene, method and backend share it.
+    """
+    sized = replace(scene, photons=plan["photons"])
+    run = plan.run(sized, method, backend, passes=plan["passes"], measures_time=True, **changes)
+    return run.but(integrator=with_parameters(run.integrator, schedule="memoryless"))
