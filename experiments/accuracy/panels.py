@@ -20,7 +20,9 @@ def panels(folder: Path, name: str, plots: list[Plot], columns: int = 2, looks=N
     with figure(folder, name, (7.2, (2.7 if columns == 2 else 2.1) * lines), lines, columns) as (_, axes):
         for place, plot in zip(axes.flat, plots, strict=False):
             draw(place, plot, looks)
-            place.set_title(plot.title, fontsize=8 if columns == 2 else 6.5)
+            # Narrow panels have no room for a long title in one line.
+            title = plot.title if columns == 2 else plot.title.replace(": ", ":\n")
+            place.set_title(title, fontsize=8 if columns == 2 else 6.5)
             # Where the ends lie is known only after everything has been drawn.
             for axis, log in ((place.xaxis, plot.x.log), (place.yaxis, plot.y.log)):
                 if log:

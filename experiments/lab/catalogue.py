@@ -22,11 +22,13 @@ class Method:
     integrator: str
     photon_map: str = ""
     plugins: tuple[str, ...] = ()
+    eye_samples: int | None = None
 
     def apply(self, run: Run, scene: "Scene") -> Run:
         """The run with this method."""
         integrator = self.integrator.replace("{photons}", str(scene.photons))
-        return run.but(integrator=integrator, photon_map=self.photon_map, plugins=run.plugins + self.plugins)
+        plugins = run.plugins + self.plugins
+        return run.but(integrator=integrator, photon_map=self.photon_map, plugins=plugins, eye_samples=self.eye_samples)
 
 
 @dataclass(frozen=True)
@@ -131,7 +133,7 @@ class Catalogue:
             photon_map = of_map["use"]
             plugins += [of_map["plugin"]] if "plugin" in of_map else []
             label = f"{label}, {of_map.get('label', structure)}"
-        return Method(name, label, table["use"], photon_map, tuple(plugins))
+        return Method(name, label, table["use"], photon_map, tuple(plugins), table.get("eye_samples"))
 
     def methods(self, names: list[str]) -> list[Method]:
         """Methods by their names; "*": every integrator, "NAME+*": every structure, "*+NAME": all that take one."""

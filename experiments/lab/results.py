@@ -116,7 +116,11 @@ def _cell(value, digits: int) -> str:
         return "–"
     if isinstance(value, bool) or not isinstance(value, int | float):
         return str(value)
-    return str(value) if isinstance(value, int) else f"{value:.{digits}g}"
+    if isinstance(value, int):
+        return str(value)
+    short = f"{value:.{digits}g}"
+    # Plain digits where that is not longer: 1320, not 1.32e+03.
+    return f"{float(short):.0f}" if "e+" in short and abs(value) < 1e7 else short
 
 
 def _compact(record: dict) -> dict:

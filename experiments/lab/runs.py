@@ -26,7 +26,7 @@ class Run:
     """One call of the program; what is None or empty is left to its defaults.
 
     `kind` is "render" or "bench" (`lampyris bench photon-maps`). `scene` is relative to the project. One of `passes`,
-    `spp`, `time_s` is the budget. `reference` is another run, whose image it is, or an EXR's path. `measures_time`
+    `spp`, `time_s` is the budget; `eye_samples` are those of an integrator that fixes them (`ppm`). `reference` is another run, whose image it is, or an EXR's path. `measures_time`
     runs are warmed up first. `repeat` tells apart runs that differ in nothing but when they were made.
     """
 
@@ -41,6 +41,7 @@ class Run:
     crop: str = ""
     passes: int | None = None
     spp: int | None = None
+    eye_samples: int | None = None
     time_s: float | None = None
     settings: tuple[str, ...] = ()
     plugins: tuple[str, ...] = ()
@@ -71,7 +72,7 @@ class Run:
         words += ["--resolution", self.resolution] if self.resolution else []
         words += ["--crop", self.crop] if self.crop else []
         words += ["--passes", str(self.passes)] if self.passes else []
-        words += ["--spp", str(self.spp)] if self.spp else []
+        words += ["--spp", str(self.spp or self.eye_samples)] if self.spp or self.eye_samples else []
         words += ["--time", f"{self.time_s:g}s"] if self.time_s else []
         words += [word for setting in self.settings for word in ("--set", setting)]
         words += [word for plugin in self.plugins for word in ("--plugin", plugin)]

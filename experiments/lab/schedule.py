@@ -11,9 +11,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from lab.catalogue import EXPERIMENTS, Catalogue, read_toml
-from lab.machine import describe_machine
-from lab.page import build_page
-from lab.results import write_results
 from lab.runs import Machine, from_plain, to_plain
 from lab.store import RunFailedError, Store
 from lab.target import Plan, Target, all_targets, with_references
@@ -120,6 +117,11 @@ def make_section(reproduction: Reproduction, name: str) -> None:
 
 def make_page(reproduction: Reproduction, plan: dict) -> None:
     """Make the page and results.md of all sections."""
+    # Here, since every run starts this module, and most of its time went into importing what draws the page.
+    from lab.machine import describe_machine  # noqa: PLC0415
+    from lab.page import build_page  # noqa: PLC0415
+    from lab.results import write_results  # noqa: PLC0415
+
     sections = [section_folder(reproduction.folder, target) / "section.json" for target in plan["targets"]]
     machine = describe_machine(reproduction.machine)
     titles = {file.parent.name: read_toml(file)["title"] for file in EXPERIMENTS.glob("*/experiment.toml")}

@@ -71,7 +71,7 @@ Json to_json(const PhotonBenchRow& row) {
             {"points", row.points},
             {"distribution", row.distribution},
             {"construction_ns_per_point", row.construction_ns_per_point},
-            {"floor_ns_per_point", row.floor_ns_per_point},
+            {"floor_ns_per_point", row.floor_ns_per_point > 0.0 ? Json(row.floor_ns_per_point) : Json()},
             {"query_ns", row.query_ns},
             {"bytes_per_point", row.bytes_per_point},
             {"photons_found_mean", row.photons_found_mean}};

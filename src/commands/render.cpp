@@ -201,6 +201,7 @@ int render(const RenderOptions& options) {
     session.photon_map = chosen.photon_map;
     session.error_rate = error_rate(chosen);
     if (fixed_eye_samples) session.eye_samples = options.eye_samples.value_or(1);
+    session.unseen_error = chosen.integrator->unseen_error(session.eye_samples);
     session.seed = options.seed.value_or(built.settings.seed);
     session.sampler = built.settings.sampler == "independent" ? kernel::SAMPLER_INDEPENDENT : kernel::SAMPLER_SOBOL;
     if (options.replay) session.start_at(uint64_t((*options.replay)[2]));

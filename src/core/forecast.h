@@ -41,7 +41,8 @@ struct EstimateHealth {
     double dark_share = 0.0;     // of the pixels that see a surface that is not black: those without any light so far
 };
 
-// Why the estimate is unstable, in a few words; empty where nothing speaks against it. What no sample has met, nothing shows.
+// Why the estimate is unstable, in a few words; empty where nothing speaks against it. What no sample has met, nothing shows;
+// what all passes share, neither: Integrator::unseen_error tells of that.
 std::string why_unstable(const EstimateHealth& health, std::span<const ErrorPoint> history, ErrorRate rate);
 
 }  // namespace lampyris

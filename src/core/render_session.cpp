@@ -76,6 +76,7 @@ void RenderSession::passes_finished(uint32_t count) {
     history_.push_back({progress_.passes, progress_.wall_s, summary.estimated_relmse});
     progress_.forecast = forecast_halving(history_, error_rate);
     progress_.unstable = why_unstable(summary.health, history_, error_rate);
+    if (!unseen_error.empty()) progress_.unstable = unseen_error;
     progress_.rays = summary.rays;
     progress_.samples = summary.samples;
     // A handful of samples cannot vouch for an error.

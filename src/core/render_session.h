@@ -60,6 +60,7 @@ class RenderSession {
     std::string photon_map;    // NAME[:key=value,...]; of integrators that use one
     PhotonStatistics photons;
     ErrorRate error_rate = ErrorRate::of_samples();  // what theory says of the integrator
+    std::string unseen_error;  // what no variance of its passes shows; makes the estimate unstable
 
     // How many passes to run next, beginning with number next_pass(): 0 when the budget is spent or the user
     // interrupts. Slices last a fraction of a second where passes are that short, and end at powers of two.

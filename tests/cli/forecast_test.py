@@ -50,3 +50,22 @@ def test_an_estimate_that_misses_light_is_said_to_be_unstable(program, source_di
     assert done.returncode == 0, done.stderr
     assert stats_of(file)["estimate_unstable"] is False
     assert "unstable" not in done.stdout
+
+
+def test_what_all_passes_share_is_told(program, source_dir, tmp_path):
+    # The variance between passes says nothing of photons and hit points that stay.
+    diffuse = source_dir / "scenes/reference/diffuse.pbrt"
+    file = tmp_path / "stats.json"
+    base = [program, diffuse, "-o", tmp_path / "o.exr", "--resolution", "32x32", "--passes", "20", "--stats", file]
+    for options, said in [
+        (["--integrator", "ppm:photonsperiteration=2000"], "all passes share one eye sample of a pixel"),
+        (["--integrator", "ppm:photonsperiteration=2000", "--spp", "4"], "all passes share 4 eye samples of a pixel"),
+        (["--integrator", "photon_map:photons=2000"], "all passes look the same photons up"),
+    ]:
+        done = run(*base, *options)
+        assert done.returncode == 0, done.stderr
+        assert f"the error estimate is unstable, the true error may be much larger: {said}" in done.stdout
+        assert stats_of(file)["estimate_unstable"] is True
+    done = run(*base, "--integrator", "ppm:photonsperiteration=2000", "--spp", "16")
+    assert done.returncode == 0, done.stderr
+    assert "all passes share" not in done.stdout

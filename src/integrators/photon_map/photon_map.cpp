@@ -227,6 +227,9 @@ class PhotonMapIntegrator : public Integrator {
  public:
     PhotonMapParams params;
     bool uses_photon_map() const override { return true; }
+    std::string unseen_error(uint32_t) const override {
+        return "all passes look the same photons up: their noise and blur are not seen";
+    }
     void render(RenderSession& session) override { PhotonMapRendering(session, params).render(); }
 };
 

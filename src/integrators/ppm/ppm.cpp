@@ -1,5 +1,7 @@
 #include "integrators/sppm/photon_mapping.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace lampyris {
@@ -10,6 +12,12 @@ class Ppm : public Integrator {
     SppmParams params;
     bool uses_photon_map() const override { return true; }
     bool fixes_eye_samples() const override { return true; }
+    std::string unseen_error(uint32_t eye_samples) const override {
+        constexpr uint32_t kEnough = 16;  // what is left of a pixel's inside is then small beside the rest, as a rule
+        if (eye_samples >= kEnough) return {};
+        return fmt::format("all passes share {} of a pixel: edges and reflections between are not seen",
+                           eye_samples > 1 ? fmt::format("{} eye samples", eye_samples) : "one eye sample");
+    }
     void render(RenderSession& session) override {
         render_photon_mapping(session, params, std::max(session.eye_samples, 1u));
     }
