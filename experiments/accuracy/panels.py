@@ -7,6 +7,7 @@ from lab.figures import draw, figure, palette
 from lab.sections import Plot
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter, NullLocator
 
+MANY = 7  # lines beyond which a legend lies beside its panel
 FEW = 1.6  # decades below which 2 and 5 are labelled, too
 
 
@@ -29,7 +30,8 @@ def panels(folder: Path, name: str, plots: list[Plot], columns: int = 2, looks=N
                     _tick(axis)
             if falling:
                 place.invert_xaxis()
-            place.legend(fontsize=5)
+            outside = {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)} if len(plot.series) > MANY else {}
+            place.legend(fontsize=5, **outside)
         for place in axes.flat[len(plots) :]:
             place.set_visible(False)
 

@@ -52,7 +52,7 @@ def palette(methods: Iterable[str]) -> dict[str, dict]:
     return {
         name: {"color": "#222222", "marker": "none"}
         if name in {"reference", "theory"}
-        else {"color": COLOURS[i % len(COLOURS)], "marker": MARKERS[i % len(MARKERS)]}
+        else {"color": COLOURS[i % len(COLOURS)], "marker": MARKERS[(i + i // len(COLOURS)) % len(MARKERS)]}
         for i, name in enumerate(order)
     }
 

@@ -26,8 +26,9 @@ class Run:
     """One call of the program; what is None or empty is left to its defaults.
 
     `kind` is "render" or "bench" (`lampyris bench photon-maps`). `scene` is relative to the project. One of `passes`,
-    `spp`, `time_s` is the budget; `eye_samples` are those of an integrator that fixes them (`ppm`). `reference` is another run, whose image it is, or an EXR's path. `measures_time`
-    runs are warmed up first. `repeat` tells apart runs that differ in nothing but when they were made.
+    `spp`, `time_s` is the budget; `eye_samples` are those of an integrator that fixes them (`ppm`). `reference` is
+    another run, whose image it is, or an EXR's path. `measures_time` runs are warmed up first. `repeat` tells apart
+    runs that differ in nothing but when they were made.
     """
 
     scene: str = ""

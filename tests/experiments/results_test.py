@@ -25,6 +25,12 @@ def tables(text):
         yield heading, [dict(zip(lines[0], row, strict=True)) for row in lines[2:]]
 
 
+def shows(text, value):
+    """Whether a cell is the value, rounded to as many significant digits as it has."""
+    digits = len(re.sub(r"e.*|\.", "", text).lstrip("-0"))
+    return float(text) == float(f"{value:.{max(digits, 1)}g}")
+
+
 @pytest.fixture(scope="module")
 def published(source_dir):
     text = (source_dir / "docs" / TEXT).read_text()
@@ -68,10 +74,7 @@ def test_numbers_are_those_of_their_runs(published):
                 value = (record.get(part) or {}).get(name)
                 if row.get(title, "–") == "–" or value is None:
                     continue
-                assert float(row[title]) == pytest.approx(value, rel=0.006 if title != "passes" else 0.0), (
-                    heading,
-                    row,
-                )
+                assert shows(row[title], value), (heading, row, value)
                 followed += 1
     assert followed > 40
 
@@ -91,9 +94,9 @@ def test_photon_map_timings_are_those_of_the_benchs_rows(published):
                 for one in run["bench"]["rows"]
                 if one["points"] == points
             ]
-            assert any(float(row["construction, ns a point"]) == pytest.approx(one, rel=0.006) for one in values)
+            assert any(shows(row["construction, ns a point"], one) for one in values)
             followed += 1
-    assert followed > 20
+    assert followed >= 20  # ten structures on two backends
 
 
 def test_the_text_says_what_a_section_says(tmp_path):
