@@ -124,7 +124,13 @@ def plots_of(plan: Plan, found: list[Outcome]) -> list[Plot]:
             series.append(Series(name, one.case.method.name, x, y, hover=hover, runs=[[one.key]] * len(x)))
         if series:
             plots.append(
-                Plot(f"time-{scene.name}", scene.title, Axis("s", True), Axis("relMSE, trimmed", True), series)
+                Plot(
+                    f"time-{scene.name}",
+                    scene.title,
+                    Axis("rendering time [s]", True),
+                    Axis("relMSE, trimmed", True),
+                    series,
+                )
             )
     return plots
 
