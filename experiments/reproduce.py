@@ -74,19 +74,25 @@ def wanted_backends(text: str) -> list[str]:
 
 def changes_of(words: list[str]) -> dict[str, dict]:
     """What --set asks for, by target; a value that is no TOML is text."""
-    known = {one.name for one in all_targets()}
+    known = {one.name: one.table for one in all_targets()}
     changes: dict[str, dict] = {}
     for word in words:
         match = re.fullmatch(r"(\w+)\.(\w+)=(.*)", word, flags=re.DOTALL)
         if not match or match[1] not in known:
-            raise DeclarationError(
-                f"--set {word}: TARGET.KEY=VALUE is wanted, TARGET one of {', '.join(sorted(known))}"
-            )
+            raise DeclarationError(f"--set {word}: TARGET.KEY=VALUE is wanted; targets: {', '.join(sorted(known))}")
+        target, key, text = match.groups()
         try:
-            value = tomllib.loads(f"value = {match[3]}")["value"]
+            value = tomllib.loads(f"value = {text}")["value"]
         except tomllib.TOMLDecodeError:
-            value = match[3]
-        changes.setdefault(match[1], {})[match[2]] = value
+            value = text
+        # Of targets that take over another's table (`runs_of`), keys of that one.
+        declared = {**known.get(known[target].get("runs_of"), {}), **known[target]}
+        if key not in declared:
+            raise DeclarationError(f"--set {word}: {target} has no '{key}'; it has: {', '.join(sorted(declared))}")
+        number = isinstance(value, int | float) and isinstance(declared[key], int | float)
+        if not number and not isinstance(value, type(declared[key])):
+            raise DeclarationError(f"--set {word}: a value such as {json.dumps(declared[key])} is wanted")
+        changes.setdefault(target, {})[key] = value
     return changes
 
 
