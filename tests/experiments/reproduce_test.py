@@ -142,7 +142,7 @@ def test_one_line_adds_an_integrator_to_plots_and_page(reproduction, plugin):
     assert any("what faces the eye" in map(str, row.values()) for table in section["tables"] for row in table["rows"])
     page = (folder / "index.html").read_text()
     assert "what faces the eye" in page
-    assert str(plugin) in page  # in the command behind its image
+    assert str(plugin) in (folder / "page/data.js").read_text()  # the command behind its image
 
 
 @pytest.mark.parametrize(
