@@ -4,11 +4,14 @@ from collections.abc import Iterable
 from contextlib import contextmanager
 from pathlib import Path
 
+import figuregen
 import matplotlib as mpl
 import matplotlib.pyplot as plt
 import numpy as np
 
 from lab.sections import Download, Plot
+
+mpl.use("Agg")  # importing figuregen has asked for LaTeX's
 
 # Okabe and Ito's colours, which most colour-blind people can tell apart, and some more; black is the reference's.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7F3C8D", "#8C8C00", "#A05A2C", "#5F6B6D"]
@@ -44,6 +47,19 @@ def figure(folder: Path, name: str, size: tuple[float, float], rows: int = 1, co
 def downloads(name: str, label: str) -> list[Download]:
     """The two files of a figure."""
     return [Download(f"{name}.png", f"{label} (PNG)"), Download(f"{name}.pdf", f"{label} (PDF)")]
+
+
+def tikz_grid(folder: Path, name: str, titles: list[str], rows: list[list[np.ndarray]], width_cm: float) -> Download:
+    """A grid of encoded pictures for LaTeX, by figuregen: NAME-tikz/NAME.tikz, and its PNGs beside it."""
+    grid = figuregen.Grid(len(rows), len(titles))
+    for i, row in enumerate(rows):
+        for j, picture in enumerate(row):
+            grid[i, j].set_image(figuregen.PNG(picture))
+    grid.set_col_titles("top", titles)
+    place = folder / f"{name}-tikz"
+    place.mkdir(parents=True, exist_ok=True)
+    figuregen.figure([[grid]], width_cm, str(place / f"{name}.tikz"), figuregen.TikzBackend())
+    return Download(f"{place.name}/{name}.tikz", f"{name} for LaTeX (TikZ)")
 
 
 def palette(methods: Iterable[str]) -> dict[str, dict]:

@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from lab.figures import downloads, figure
-from lab.images import exposure_of
+from lab.figures import downloads, figure, tikz_grid
+from lab.images import encode, exposure_of
 from lab.runs import Run
-from lab.sections import Section
+from lab.sections import Download, Section
 from lab.store import Store
 from lab.target import Plan
 from matplotlib.patches import Rectangle
@@ -57,6 +57,17 @@ def draw_figure(plan: Plan, store: Store, folder: Path, found: list[equal_time.O
                 one.add_patch(Rectangle((-0.5, -0.5), x1 - x0, y1 - y0, **{**frame, "linewidth": 2.0}))
 
 
+def write_tikz(plan: Plan, store: Store, folder: Path, found: list[equal_time.Outcome]) -> Download:
+    """The crops, a row for each, as a paper includes them."""
+    pictures = equal_time.pictures_of(store, folder, plan.scenes[0], found)
+    exposure = exposure_of(pictures[-1][1])
+    rows = []
+    for share in plan["crops"]:
+        boxes = [(image, crop_pixels(share, *image.shape[:2])) for _, image in pictures]
+        rows.append([encode(image[y0:y1, x0:x1], exposure) for image, (x0, y0, x1, y1) in boxes])
+    return tikz_grid(folder, "opening", [title.replace("\n", ", ") for title, _ in pictures], rows, 17.0)
+
+
 def report(plan: Plan, store: Store, folder: Path) -> Section:
     """The pictures, a table of errors and the verdict."""
     found = equal_time.outcomes(plan, store, folder)
@@ -64,7 +75,7 @@ def report(plan: Plan, store: Store, folder: Path) -> Section:
     files = [write_csv(folder / "opening.csv", rows)]
     if found:
         draw_figure(plan, store, folder, found)
-        files += downloads("opening", "images and crops")
+        files += [*downloads("opening", "images and crops"), write_tikz(plan, store, folder, found)]
     claim = "Where all light takes specular-diffuse-specular paths, only progressive photon mapping shows it"
     text = [
         f"{plan['time_s']} s of rendering for each method, set-up not counted.",

@@ -1,12 +1,14 @@
 """The targets of parallel_ppm_2010 on made-up records: tables and verdicts are computed right. Nothing is rendered."""
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 from lab import noise
 from lab.catalogue import EXPERIMENTS, Catalogue
+from lab.figures import tikz_grid
 from lab.runs import Machine
 from lab.store import Store
 from lab.target import all_targets
@@ -360,3 +362,13 @@ def test_the_opening_says_which_methods_are_absent():
     assert "bdpt" in opening.absent({"path": {}}) and "mlt" in opening.absent({"path": {}, "bdpt": {}})
     assert opening.absent({"bdpt": {}, "mlt": {}}) == ""
     assert opening.crop_pixels([0.25, 0.5, 0.5, 1.0], 120, 160) == (40, 60, 80, 120)
+
+
+def test_a_grid_for_latex_lies_beside_its_pictures(tmp_path):
+    picture = np.linspace(0.0, 1.0, 4 * 6 * 3).reshape(4, 6, 3)
+    told = tikz_grid(tmp_path, "grid", ["one", "two"], [[picture, picture]], 8.0)
+    text = (tmp_path / told.file).read_text()
+    included = re.findall(r"\\detokenize\{([^}]+\.png)\}", text)
+    assert len(included) == 2
+    assert all((tmp_path / "grid-tikz" / name).is_file() for name in included)
+    assert "one" in text
