@@ -5,7 +5,7 @@ from itertools import groupby
 from pathlib import Path
 
 import numpy as np
-from accuracy.measured import NEAR, Curve, all_curves, all_runs, parts_of, plan_of_curves, theory_of
+from accuracy.measured import NEAR, Curve, all_curves, all_runs, parts_of, plan_of_curves, theory_of, who_columns
 from accuracy.panels import panels
 from lab.figures import downloads, palette
 from lab.runs import Run
@@ -126,7 +126,7 @@ def _price_plot(key: tuple, curves: list[Curve]) -> Plot | None:
 
 def _slope_table(plan: Plan, curves: list[Curve]) -> Table:
     columns = [
-        *_who(),
+        *who_columns(),
         Column("passes", "passes"),
         Column("final", "relMSE at the end"),
         Column("floor", "reference's own relMSE"),
@@ -161,7 +161,7 @@ def _note(curve: Curve) -> str:
 
 
 def _time_table(plan: Plan, curves: list[Curve]) -> Table:
-    columns = [*_who(), *(Column(f"level_{i}", f"{level:.0e}", "s") for i, level in enumerate(plan["levels"]))]
+    columns = [*who_columns(), *(Column(f"level_{i}", f"{level:.0e}", "s") for i, level in enumerate(plan["levels"]))]
     rows = []
     for curve in curves:
         times = {f"level_{i}": curve.time_to(level) for i, level in enumerate(plan["levels"])}
@@ -172,7 +172,7 @@ def _time_table(plan: Plan, curves: list[Curve]) -> Table:
 
 def _price_table(curves: list[Curve]) -> Table:
     columns = [
-        *_who(),
+        *who_columns(),
         Column("halvings", "halvings"),
         Column("error", "last: from relMSE"),
         Column("seconds", "took", "s"),
@@ -192,7 +192,7 @@ def _price_table(curves: list[Curve]) -> Table:
 
 
 def _parts_table(plan: Plan, store: Store, curves: list[Curve]) -> Table:
-    columns = [*_who(), Column("final", "relMSE"), Column("variance", "variance"), Column("bias", "bias^2")]
+    columns = [*who_columns(), Column("final", "relMSE"), Column("variance", "variance"), Column("bias", "bias^2")]
     columns += [Column("floor", "the reference's own error")]
     rows = []
     for curve in curves:
@@ -210,10 +210,6 @@ def _parts_table(plan: Plan, store: Store, curves: list[Curve]) -> Table:
         "seed has met yet count as bias."
     )
     return Table("parts", "Bias and variance at the end", columns, rows, caption)
-
-
-def _who() -> list[Column]:
-    return [Column("scene", "scene"), Column("backend", "backend"), Column("method", "method")]
 
 
 def _row(curve: Curve) -> dict:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from accuracy.measured import NEAR, Curve, Entry, all_curves, all_runs, plan_of_curves
+from accuracy.measured import NEAR, Curve, Entry, all_curves, all_runs, plan_of_curves, who_columns
 from accuracy.panels import panels
 from lab.figures import downloads
 from lab.runs import Run
@@ -162,7 +162,7 @@ def _warning_verdict(looks: list[Look]) -> Verdict:
 
 def _estimate_table(plan: Plan, curves: list[Curve], looks: dict[int, list[Look]]) -> Table:
     factor = plan["factor"]
-    columns = [*_who(), Column("looks", "looks"), Column("median", "error over estimate, median")]
+    columns = [*who_columns(), Column("looks", "looks"), Column("median", "error over estimate, median")]
     columns += [Column("largest", "largest"), Column("below", "error below the estimate")]
     columns += [Column("within", f"within a factor of {factor:g}"), Column("unstable", "called unstable")]
     rows = []
@@ -181,7 +181,7 @@ def _estimate_table(plan: Plan, curves: list[Curve], looks: dict[int, list[Look]
 
 
 def _halving_table(curves: list[Curve], looks: dict[int, list[Look]]) -> Table:
-    columns = [*_who(), Column("looks", "looks"), Column("forecast", "with a forecast")]
+    columns = [*who_columns(), Column("looks", "looks"), Column("forecast", "with a forecast")]
     columns += [
         Column("stable", "right, if not unstable"),
         Column("all", "right, all"),
@@ -201,10 +201,6 @@ def _halving_table(curves: list[Curve], looks: dict[int, list[Look]]) -> Table:
         rows.append(row | {"actual": float(np.median(actual)) if actual else None})
     caption = "Halving over time so far: 1 where the error falls as 1/time; of those that halved before the run's end."
     return Table("halvings", "The next halving and its forecast", columns, rows, caption)
-
-
-def _who() -> list[Column]:
-    return [Column("scene", "scene"), Column("backend", "backend"), Column("method", "method")]
 
 
 def _row(curve: Curve) -> dict:

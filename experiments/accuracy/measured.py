@@ -8,6 +8,7 @@ import numpy as np
 from lab.catalogue import EXPERIMENTS, Method, Scene, read_toml
 from lab.images import ROOT, read_exr, reference_error
 from lab.runs import Run
+from lab.sections import Column
 from lab.statistics import (
     ErrorParts,
     Halving,
@@ -132,6 +133,11 @@ class Curve:
         """One line for hover texts."""
         case = self.case
         return f"{case.method.label}, {case.scene.title}, {case.backend}, {len(self.keys)} seeds"
+
+
+def who_columns() -> list[Column]:
+    """The columns that say which case a row is about."""
+    return [Column("scene", "scene"), Column("backend", "backend"), Column("method", "method")]
 
 
 def plan_of_curves(plan: Plan) -> Plan:

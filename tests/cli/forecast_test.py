@@ -2,18 +2,9 @@
 
 import re
 
-import pytest
-
-from support.render_program import SCENE, run, stats_of
+from support.render_program import run, stats_of
 
 KEYS = ["halving_s", "halving_low_s", "halving_high_s", "estimate_unstable"]
-
-
-@pytest.fixture
-def scene(tmp_path):
-    path = tmp_path / "scene.pbrt"
-    path.write_text(SCENE)
-    return path
 
 
 def test_statistics_and_last_lines_have_the_forecast(program, scene, tmp_path):

@@ -10,13 +10,6 @@ import pytest
 from support.render_program import SCENE, command, run, stats_of
 
 
-@pytest.fixture
-def scene(tmp_path):
-    path = tmp_path / "scene.pbrt"
-    path.write_text(SCENE)
-    return path
-
-
 def assert_refused(done, code, *parts):
     assert done.returncode == code, done.stderr
     assert done.stdout == ""

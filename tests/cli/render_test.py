@@ -20,13 +20,6 @@ STATS_KEYS = {
 }  # fmt: skip
 
 
-@pytest.fixture
-def scene(tmp_path):
-    path = tmp_path / "scene.pbrt"
-    path.write_text(SCENE)
-    return path
-
-
 # ---- Images ----------------------------------------------------------------------------------------------------------
 
 
