@@ -26,7 +26,9 @@ std::string ProgressDisplay::error_text(const RenderProgress& progress) {
     const ErrorForecast& forecast = progress.forecast;
     const double percent = 100.0 * ErrorForecast::kConfidence;
     const std::string error = fmt::format("estimated relMSE {:.2e}, ", progress.estimated_error);
-    if (std::isfinite(forecast.high_s))
+    // An end as far away as that tells no more than that there may be none.
+    constexpr double kFar = 100.0;  // times what was spent so far
+    if (forecast.high_s < kFar * progress.wall_s)
         return error + fmt::format("halving it takes {} to {} more ({:.0f} %)", duration_text(forecast.low_s),
                                    duration_text(forecast.high_s), percent);
     if (std::isfinite(forecast.low_s))
