@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 
 namespace lampyris::vulkan {
@@ -50,6 +51,23 @@ vk::raii::Instance make_instance(const vk::raii::Context& loader, ValidationLog*
         messages.setPNext(&features);
     }
     return {loader, info};
+}
+
+// One for the whole program, and kept: NVIDIA's driver (580) refuses after some twenty instances that came and went.
+std::shared_ptr<const Connection> shared_connection() {
+    static const auto* const kept = [] {
+        auto connection = std::make_shared<Connection>();
+        connection->instance = make_instance(connection->loader, nullptr);
+        return new std::shared_ptr<const Connection>(std::move(connection));
+    }();
+    return *kept;
+}
+
+// One that writes to a log of its own.
+std::shared_ptr<const Connection> validated_connection(ValidationLog& log) {
+    auto connection = std::make_shared<Connection>();
+    connection->instance = make_instance(connection->loader, &log);
+    return connection;
 }
 
 int preference(vk::PhysicalDeviceType type) {
@@ -207,9 +225,9 @@ bool ValidationLog::empty() const {
 
 Context::Context(const DeviceOptions& options) try {
     validation = read_switch(options, "validation", Switch::off) == Switch::on;
-    instance = make_instance(loader, validation ? &validation_log : nullptr);
-    if (validation) messenger = vk::raii::DebugUtilsMessengerEXT(instance, messenger_info(validation_log));
-    auto devices = devices_of(instance);
+    connection = validation ? validated_connection(validation_log) : shared_connection();
+    if (validation) messenger = vk::raii::DebugUtilsMessengerEXT(connection->instance, messenger_info(validation_log));
+    auto devices = devices_of(connection->instance);
     if (devices.empty())
         throw MachineError(
             "error: there is no Vulkan 1.2 device (Debian: mesa-vulkan-drivers has one that needs no GPU); --backend "
@@ -279,11 +297,35 @@ void Context::submit_and_wait(vk::CommandBuffer commands) {
         throw MachineError("error: Vulkan: waiting for the device failed");
 }
 
+Staging& Context::staging(Direction direction, size_t bytes) {
+    Staging& kept = staging_[direction == Direction::download];
+    if (kept.size >= bytes) return kept;
+    kept = {};
+    const size_t size = std::bit_ceil(std::max<size_t>(bytes, 1 << 16));
+    using Memory = vk::MemoryPropertyFlagBits;
+    const bool read = direction == Direction::download;
+    Staging made;
+    made.buffer =
+        vk::raii::Buffer(device, {{},
+                                  size,
+                                  read ? vk::BufferUsageFlagBits::eTransferDst : vk::BufferUsageFlagBits::eTransferSrc,
+                                  vk::SharingMode::eExclusive});
+    const auto needs = made.buffer.getMemoryRequirements();
+    // Reading memory that is not cached is hundreds of times slower: over the bus, word by word.
+    const uint32_t type = memory_type(needs.memoryTypeBits, Memory::eHostVisible | Memory::eHostCoherent,
+                                      read ? Memory::eHostCached : vk::MemoryPropertyFlags());
+    made.memory = vk::raii::DeviceMemory(device, vk::MemoryAllocateInfo(needs.size, type));
+    made.buffer.bindMemory(*made.memory, 0);
+    made.mapped = made.memory.mapMemory(0, VK_WHOLE_SIZE);
+    made.size = size;
+    kept = std::move(made);
+    return kept;
+}
+
 std::vector<DeviceInfo> list_vulkan_devices() try {
-    vk::raii::Context loader;
-    const auto instance = make_instance(loader, nullptr);
+    const auto connection = shared_connection();
     std::vector<DeviceInfo> list;
-    for (const auto& device : devices_of(instance)) {
+    for (const auto& device : devices_of(connection->instance)) {
         const auto properties = device.getProperties();
         DeviceInfo info;
         info.backend = "vulkan";

@@ -28,14 +28,27 @@ struct Capabilities {
     bool has_host_visible_local = false;  // memory that both see: map it and copy nothing
 };
 
+// The Vulkan library and a connection to it.
+struct Connection {
+    vk::raii::Context loader;
+    vk::raii::Instance instance = nullptr;
+};
+
+// Memory that the host maps, for copies to and from what it does not.
+struct Staging {
+    vk::raii::DeviceMemory memory = nullptr;
+    vk::raii::Buffer buffer = nullptr;
+    void* mapped = nullptr;
+    size_t size = 0;
+};
+
 class Context {
  public:
     // Throws MachineError where there is no Vulkan or no such device.
     explicit Context(const DeviceOptions& options);
 
     ValidationLog validation_log;  // before the instance, which writes to it until it is gone
-    vk::raii::Context loader;
-    vk::raii::Instance instance = nullptr;
+    std::shared_ptr<const Connection> connection;
     vk::raii::DebugUtilsMessengerEXT messenger = nullptr;
     vk::raii::PhysicalDevice physical = nullptr;
     vk::raii::Device device = nullptr;
@@ -60,9 +73,13 @@ class Context {
         submit_and_wait(*buffers[0]);
     }
     void submit_and_wait(vk::CommandBuffer commands);
+    // Of at least so many bytes; kept for the next copy. Throws vk::Error.
+    enum class Direction { upload, download };
+    Staging& staging(Direction direction, size_t bytes);
 
  private:
     vk::raii::Fence fence_ = nullptr;
+    Staging staging_[2];
 };
 
 // Every Vulkan device of this machine, in the order of the numbers that --device takes: GPUs before CPUs.

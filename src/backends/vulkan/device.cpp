@@ -42,9 +42,13 @@ class VulkanDevice final : public Device {
         shader_options_.ray_query = ray_query == Switch::on || (ray_query == Switch::automatic &&
                                                                 context_->can.ray_query && !context_->can.is_cpu);
         unfinished_ = std::make_unique<VulkanBuffer>(context_, account_, sizeof(uint32_t), "the unfinished flag",
-                                                     BufferOptions{.staged = staged_});
+                                                     BufferOptions{.read_back = true});
         unfinished_->fill_zero();
         no_scene_.buffers[kUnfinishedBinding] = unfinished_->handle();
+        // Drivers that are a CPU divide by its instructions, which round as IEEE 754 says.
+        const Switch exact = read_switch(options, Switch::off);
+        shader_options_.exact = exact == Switch::on || (exact == Switch::automatic && !context_->can.is_cpu);
+        shader_options_.flush_denormals = shader_options_.exact && context_->can.flushes_denormals;
         context_->check_validation();
     }
 

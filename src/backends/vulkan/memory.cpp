@@ -10,6 +10,7 @@
 namespace lampyris::vulkan {
 namespace {
 
+constexpr size_t kUpdateBytes = 65536;              // vkCmdUpdateBuffer takes no more
 constexpr size_t kStagingBytes = size_t(16) << 20;  // large copies go through in pieces of this size
 
 std::string mebibytes(uint64_t bytes) { return fmt::format("{:.1f} MiB", double(bytes) / (1024.0 * 1024.0)); }
@@ -41,7 +42,7 @@ VulkanBuffer::VulkanBuffer(std::shared_ptr<Context> context, std::shared_ptr<Mem
         const bool mapped = !options.staged;
         const uint32_t type =
             mapped ? context_->memory_type(needs.memoryTypeBits, Memory::eHostVisible | Memory::eHostCoherent,
-                                           Memory::eDeviceLocal)
+                                           options.read_back ? Memory::eHostCached : Memory::eDeviceLocal)
                    : context_->memory_type(needs.memoryTypeBits, {}, Memory::eDeviceLocal);
         vk::MemoryAllocateFlagsInfo flags(vk::MemoryAllocateFlagBits::eDeviceAddress);
         vk::MemoryAllocateInfo info(needs.size, type);
@@ -78,13 +79,18 @@ void VulkanBuffer::upload(const void* data, size_t bytes, size_t offset) {
         std::memcpy(static_cast<char*>(mapped_) + offset, data, bytes);
         return;
     }
-    VulkanBuffer staging(context_, account_, std::min(bytes, kStagingBytes), "staging of " + name_,
-                         {.usage = vk::BufferUsageFlagBits::eTransferSrc});
+    if (bytes <= kUpdateBytes && bytes % 4 == 0 && offset % 4 == 0) {
+        context_->submit([&](vk::raii::CommandBuffer& commands) {
+            commands.updateBuffer<uint8_t>(*buffer_, offset, {uint32_t(bytes), static_cast<const uint8_t*>(data)});
+        });
+        return;
+    }
+    const Staging& staging = context_->staging(Context::Direction::upload, std::min(bytes, kStagingBytes));
     for (size_t done = 0; done < bytes; done += kStagingBytes) {
         const size_t piece = std::min(kStagingBytes, bytes - done);
-        std::memcpy(staging.mapped_, static_cast<const char*>(data) + done, piece);
+        std::memcpy(staging.mapped, static_cast<const char*>(data) + done, piece);
         context_->submit([&](vk::raii::CommandBuffer& commands) {
-            commands.copyBuffer(*staging.buffer_, *buffer_, vk::BufferCopy(0, offset + done, piece));
+            commands.copyBuffer(*staging.buffer, *buffer_, vk::BufferCopy(0, offset + done, piece));
         });
     }
 }
@@ -96,17 +102,16 @@ void VulkanBuffer::download(void* data, size_t bytes, size_t offset) const {
         std::memcpy(data, static_cast<const char*>(mapped_) + offset, bytes);
         return;
     }
-    VulkanBuffer staging(context_, account_, std::min(bytes, kStagingBytes), "staging of " + name_,
-                         {.usage = vk::BufferUsageFlagBits::eTransferDst});
+    const Staging& staging = context_->staging(Context::Direction::download, std::min(bytes, kStagingBytes));
     for (size_t done = 0; done < bytes; done += kStagingBytes) {
         const size_t piece = std::min(kStagingBytes, bytes - done);
         context_->submit([&](vk::raii::CommandBuffer& commands) {
-            commands.copyBuffer(*buffer_, *staging.buffer_, vk::BufferCopy(offset + done, 0, piece));
+            commands.copyBuffer(*buffer_, *staging.buffer, vk::BufferCopy(offset + done, 0, piece));
             const vk::MemoryBarrier barrier(vk::AccessFlagBits::eTransferWrite, vk::AccessFlagBits::eHostRead);
             commands.pipelineBarrier(vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eHost, {},
                                      barrier, {}, {});
         });
-        std::memcpy(static_cast<char*>(data) + done, staging.mapped_, piece);
+        std::memcpy(static_cast<char*>(data) + done, staging.mapped, piece);
     }
 }
 

@@ -14,7 +14,8 @@ struct MemoryAccount {
 };
 
 struct BufferOptions {
-    bool staged = false;  // device-local memory that the host does not map
+    bool staged = false;     // device-local memory that the host does not map
+    bool read_back = false;  // mapped, and above all read by the host
     vk::BufferUsageFlags usage = vk::BufferUsageFlagBits::eStorageBuffer;
     size_t alignment = 0;  // of the address; 0: whatever the device wants
 };
