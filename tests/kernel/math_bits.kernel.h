@@ -27,7 +27,7 @@ KERNEL(math_bits) {
     } else if (which == 5u) {
         r = vec4(cross3(v, vec3(p.w, p.x, p.y)), dot3(v, vec3(p.w, p.z, p.y)));
     } else if (which == 6u) {
-        r = vec4(cross(v, vec3(p.w, p.x, p.y)), dot(v, vec3(p.w, p.z, p.y)));
+        r = vec4(lerp3_of(p.w, v, vec3(p.w, p.x, p.y)), lerp_of(p.x, p.y, p.z));
     } else if (which == 7u) {
         Frame f = frame_from_z(unit(v));
         r = vec4(to_world(f, vec3(p.y, p.z, p.w)), f.x.y);

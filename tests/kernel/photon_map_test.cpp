@@ -67,7 +67,7 @@ TEST(PhotonMap, FixedOrderMeansTheSameSums) {
             std::mt19937 random(3);
             for (const Machine& machine : machines) {
                 SCOPED_TRACE(choice + " " + name + " " + machine.backend + " " + std::to_string(machine.threads));
-                DeviceOptions options;
+                DeviceOptions options = exact_options(machine.backend);
                 options.threads = machine.threads;
                 const auto device = create_device(machine.backend, options);
                 const auto map = open_map(*device, choice);

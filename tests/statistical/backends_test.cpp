@@ -62,6 +62,19 @@ TEST_P(PhotonMappingTest, TwoPassesAreTheSame) {
     expect_agreement(scene, backend, settings, 1e-5, 0.999);
 }
 
+// What makes a GPU's images equal must not change those of a device that divides exactly by itself.
+TEST(BackendsExactTest, QuotientsByIntegersAreTheSame) {
+    const auto others = other_backends();
+    if (std::find(others.begin(), others.end(), "vulkan") == others.end()) GTEST_SKIP() << "no Vulkan device";
+    RenderSettings settings;
+    settings.samples = 1;
+    settings.seed = 25;
+    settings.device_settings["exact"] = "on";
+    settings.device_settings["staging"] = "on";  // as on a GPU
+    for (const char* scene : {"reference/dielectric-rough", "reference/textures"})
+        expect_agreement(scene, "vulkan", settings, 1e-5, 0.999);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Scenes, PhotonMappingTest,
     testing::Combine(testing::Values("reference/coated-diffuse", "reference/infinite-image", "reference/textures"),

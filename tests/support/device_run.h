@@ -18,6 +18,13 @@ inline std::vector<std::string> usable_backends() {
     return names;
 }
 
+// Of tests that ask for the CPU's bits: a GPU divides as it likes unless it is told not to.
+inline DeviceOptions exact_options(const std::string& backend) {
+    DeviceOptions options;
+    if (backend == "vulkan") options.settings["exact"] = "auto";
+    return options;
+}
+
 template <class T>
 BufferHandle upload(Device& device, const std::vector<T>& values, const char* name) {
     BufferHandle buffer = device.create_buffer(std::max<size_t>(values.size(), 1) * sizeof(T), name);

@@ -4,6 +4,7 @@
 #include "core/device.h"
 #include "core/scene/noise_table.h"
 #include "core/scene/scene.h"
+#include "support/device_run.h"
 
 #include <cstring>
 #include <map>
@@ -82,7 +83,7 @@ struct TextureScene {
         static std::map<std::string, std::unique_ptr<Device>> devices;
         static std::map<std::pair<std::string, std::string>, KernelHandle> kernels;
         std::unique_ptr<Device>& device = devices[backend];
-        if (!device) device = create_device(backend);
+        if (!device) device = create_device(backend, exact_options(backend));
         KernelHandle& kernel = kernels[{backend, file}];
         if (!kernel) kernel = device->compile(file, kernel::kAllEffects);
         const DeviceSceneHandle uploaded = device->upload(scene);

@@ -147,6 +147,10 @@ Capabilities capabilities_of(const vk::raii::PhysicalDevice& device, uint32_t qu
                 .get<vk::PhysicalDeviceAccelerationStructurePropertiesKHR>()
                 .maxPrimitiveCount;
     can.int64_atomics = offers_int64_atomics(device);
+    can.flushes_denormals =
+        device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceFloatControlsProperties>()
+            .get<vk::PhysicalDeviceFloatControlsProperties>()
+            .shaderDenormFlushToZeroFloat32;
     can.timestamps =
         device.getQueueFamilyProperties()[queue_family].timestampValidBits > 0 && base.limits.timestampPeriod > 0;
     can.timestamp_ns = base.limits.timestampPeriod;

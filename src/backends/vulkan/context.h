@@ -21,6 +21,7 @@ struct Capabilities {
     bool ray_query = false;
     uint64_t max_boxes = 0;  // of an acceleration structure
     bool int64_atomics = false;
+    bool flushes_denormals = false;  // of floats, when told to
     bool timestamps = false;
     double timestamp_ns = 1;  // per tick
     uint64_t max_storage_range = 0, max_allocation = 0;

@@ -25,7 +25,7 @@ class VulkanDevice final : public Device {
           cache_(cache_folder(options)) {
         check_settings(
             "vulkan", options,
-            {"cache", "optimize", "precise", "ray_query", "specialise", "staging", "validation", "workgroup"});
+            {"cache", "exact", "optimize", "precise", "ray_query", "specialise", "staging", "validation", "workgroup"});
         account_->limit = options.max_memory;
         shader_options_.precise = read_switch(options, "precise", Switch::on) != Switch::off;
         shader_options_.optimize = read_switch(options, "optimize", Switch::on) != Switch::off;
@@ -46,7 +46,7 @@ class VulkanDevice final : public Device {
         unfinished_->fill_zero();
         no_scene_.buffers[kUnfinishedBinding] = unfinished_->handle();
         // Drivers that are a CPU divide by its instructions, which round as IEEE 754 says.
-        const Switch exact = read_switch(options, Switch::off);
+        const Switch exact = read_switch(options, "exact", Switch::off);
         shader_options_.exact = exact == Switch::on || (exact == Switch::automatic && !context_->can.is_cpu);
         shader_options_.flush_denormals = shader_options_.exact && context_->can.flushes_denormals;
         context_->check_validation();

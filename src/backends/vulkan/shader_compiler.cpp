@@ -101,7 +101,8 @@ ContentHash key_of(const std::string& source, const ShaderOptions& options) {
     hash.add(kPipelineVersion);
     hash.add(fmt::format("glslang {}.{}.{} {}", GLSLANG_VERSION_MAJOR, GLSLANG_VERSION_MINOR, GLSLANG_VERSION_PATCH,
                          spvSoftwareVersionString()));
-    hash.add(fmt::format("precise {} optimize {}", options.precise, options.optimize));
+    hash.add(fmt::format("precise {} exact {} {} optimize {}", options.precise, options.exact, options.flush_denormals,
+                         options.optimize));
     std::set<std::string_view> seen;
     add_text(hash, source, seen);
     return hash;
@@ -112,7 +113,7 @@ struct GlslangProcess {
     ~GlslangProcess() { glslang::FinalizeProcess(); }
 };
 
-Spirv compile_glsl(std::string_view kernel_file, const std::string& source) {
+Spirv compile_glsl(std::string_view kernel_file, const std::string& source, bool keep_uncalled) {
     static std::mutex mutex;  // glslang's process state
     const std::lock_guard lock(mutex);
     static const GlslangProcess process;
@@ -126,7 +127,8 @@ Spirv compile_glsl(std::string_view kernel_file, const std::string& source) {
     shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_2);
     shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_5);
     EmbeddedIncluder includer;
-    const auto messages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
+    const auto messages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules |
+                                                   (keep_uncalled ? EShMsgKeepUncalled : EShMsgDefault));
     const bool parsed = shader.parse(GetDefaultResources(), 460, false, messages, includer);
     glslang::TProgram program;
     program.addShader(&shader);
@@ -183,13 +185,13 @@ std::string shader_source(std::string_view kernel_file, const ShaderOptions& opt
         "#define KERNEL_TRACER_{} 1\n"
         "#define KERNEL_LOCAL_SIZE {}\n"
         "const uint kEffects = {:#x}u;\n"
-        "{}"
+        "{}{}"
         "#include \"core/kernel/entry.glsl\"\n",
         int64 ? "#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require\n"
                 "#extension GL_EXT_shader_atomic_int64 : require\n"
               : "",
         ray_query ? "#extension GL_EXT_ray_query : require\n" : "", options.ray_query ? "ray_query" : "bvh2",
-        options.local_size, options.effects, includes);
+        options.local_size, options.effects, options.exact ? "#include \"core/kernel/exact.glsl\"\n" : "", includes);
 }
 
 CompiledShader compile_shader(std::string_view kernel_file, const ShaderOptions& options, const ShaderCache& cache) {
@@ -198,7 +200,8 @@ CompiledShader compile_shader(std::string_view kernel_file, const ShaderOptions&
     const std::string source = shader_source(kernel_file, options);
     const ContentHash key = key_of(source, options);
     if (auto found = cache.find(key)) return {std::move(*found), true};
-    Spirv spirv = compile_glsl(kernel_file, source);
+    Spirv spirv = compile_glsl(kernel_file, source, options.exact);  // nothing calls exact.glsl yet
+    if (options.exact) spirv = exact_arithmetic(spirv, options.flush_denormals);
     if (options.precise) spirv = forbid_contraction(spirv);
     if (options.optimize) spirv = optimize(kernel_file, spirv);
     cache.store(key, spirv);

@@ -1,4 +1,4 @@
-// Kernel text to SPIR-V: glslang, then forbid_contraction, then SPIRV-Tools' optimizer, then the cache on disk.
+// Kernel text to SPIR-V: glslang, then exact_arithmetic and forbid_contraction, then SPIRV-Tools' optimizer, then the cache on disk.
 #pragma once
 
 #include "backends/vulkan/shader_cache.h"
@@ -11,8 +11,10 @@
 namespace lampyris::vulkan {
 
 struct ShaderOptions {
-    uint32_t effects = 0;  // the exact mask: code for other effects is compiled out
-    bool precise = true;   // forbid contraction
+    uint32_t effects = 0;          // the exact mask: code for other effects is compiled out
+    bool precise = true;           // forbid contraction
+    bool exact = false;            // quotients and square roots by core/kernel/exact.glsl
+    bool flush_denormals = false;  // as the CPU does; only with `exact`
     bool optimize = true;
     bool ray_query = false;  // trace with VK_KHR_ray_query instead of the BVH in the shader
     uint32_t local_size = 64;

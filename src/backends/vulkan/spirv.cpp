@@ -10,19 +10,6 @@
 namespace lampyris::vulkan {
 namespace {
 
-constexpr size_t kHeaderWords = 5;
-
-// Calls visit(opcode, words, count) for each instruction.
-template <typename Visit>
-void for_each_instruction(const Spirv& spirv, Visit&& visit) {
-    for (size_t at = kHeaderWords; at < spirv.size();) {
-        const uint32_t count = spirv[at] >> 16;
-        if (count == 0 || at + count > spirv.size()) return;  // not SPIR-V; the validator says so better
-        visit(static_cast<spv::Op>(spirv[at] & 0xffffu), &spirv[at], count);
-        at += count;
-    }
-}
-
 // Arithmetic to which the SPIR-V specification lets NoContraction apply; all have their result id in word 2.
 bool is_float_arithmetic(spv::Op op) {
     switch (op) {

@@ -1,6 +1,9 @@
-// What Lampyris does to SPIR-V itself: forbidding contraction, and reading which buffers a kernel uses.
+// What Lampyris does to SPIR-V itself: forbidding contraction, exact quotients and roots, and reading which buffers a kernel uses.
 #pragma once
 
+#include <glslang/SPIRV/spirv.hpp>
+
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -8,9 +11,26 @@ namespace lampyris::vulkan {
 
 using Spirv = std::vector<uint32_t>;
 
+constexpr size_t kHeaderWords = 5;
+
+// Calls visit(opcode, words, count) for each instruction.
+template <typename Visit>
+void for_each_instruction(const Spirv& spirv, Visit&& visit) {
+    for (size_t at = kHeaderWords; at < spirv.size();) {
+        const uint32_t count = spirv[at] >> 16;
+        if (count == 0 || at + count > spirv.size()) return;  // not SPIR-V; the validator says so better
+        visit(static_cast<spv::Op>(spirv[at] & 0xffffu), &spirv[at], count);
+        at += count;
+    }
+}
+
 // Decorates every floating-point arithmetic result NoContraction, so that neither the optimizer nor a driver contracts or
 // reassociates: bit equality with the CPU rests on it. Idempotent.
 Spirv forbid_contraction(const Spirv& spirv);
+
+// Has every quotient and square root of floats computed by the functions of core/kernel/exact.glsl, which must be in the module, and their
+// denormals flushed to zero where `flush_denormals` (the device must offer shaderDenormFlushToZeroFloat32).
+Spirv exact_arithmetic(const Spirv& spirv, bool flush_denormals);
 
 struct ShaderBinding {
     uint32_t set = 0, binding = 0;
