@@ -100,8 +100,8 @@ class CpuDevice final : public Device {
         check_settings(backend(), options, {});
         meter_->limit = options.max_memory;
         if (!options.device.empty() && options.device != "0" && description().find(options.device) == std::string::npos)
-            throw InputError(fmt::format("error: --device {}: the CPU backends have one device: 0, {}", options.device,
-                                         description()));
+            throw MachineError(fmt::format("error: --device {}: the CPU backends have one device: 0, {}",
+                                           options.device, description()));
         threads_ = options.threads ? options.threads : std::max(1u, std::thread::hardware_concurrency());
         // TBB starts as many threads as the machine has, whatever an arena asks for, unless it is told.
         if (threads_ > std::thread::hardware_concurrency())

@@ -177,7 +177,7 @@ size_t choose(const std::vector<vk::raii::PhysicalDevice>& devices, const std::s
         if (wish == std::to_string(i) || name.find(wish) != std::string::npos) return i;
         list += fmt::format("{}{} {}", i ? ", " : "", i, name);
     }
-    throw InputError(fmt::format("error: there is no Vulkan device \"{}\"; there are: {}", wish, list));
+    throw MachineError(fmt::format("error: there is no Vulkan device \"{}\"; there are: {}", wish, list));
 }
 
 }  // namespace
