@@ -64,8 +64,7 @@ Agreement expect_agreement(const std::string& scene, const std::string& other, c
     const Rendered cpu = render_file(scene_path(scene), s);
     s.backend = other;
     s.device_settings = settings.device_settings;
-    if (other == "vulkan")
-        s.device_settings.insert({"exact", "auto"});  // a GPU divides as it likes unless it is told not to
+    s.device_settings.merge(exact_options(other).settings);
     const Rendered theirs = render_file(scene_path(scene), s);
     const Agreement result = agreement(cpu, theirs, tolerance);
     std::string where;

@@ -53,21 +53,16 @@ vk::raii::Instance make_instance(const vk::raii::Context& loader, ValidationLog*
     return {loader, info};
 }
 
-// One for the whole program, and kept: NVIDIA's driver (580) refuses after some twenty instances that came and went.
-std::shared_ptr<const Connection> shared_connection() {
-    static const auto* const kept = [] {
-        auto connection = std::make_shared<Connection>();
-        connection->instance = make_instance(connection->loader, nullptr);
-        return new std::shared_ptr<const Connection>(std::move(connection));
-    }();
-    return *kept;
+std::shared_ptr<const Connection> connect(ValidationLog* log) {
+    auto connection = std::make_shared<Connection>();
+    connection->instance = make_instance(connection->loader, log);
+    return connection;
 }
 
-// One that writes to a log of its own.
-std::shared_ptr<const Connection> validated_connection(ValidationLog& log) {
-    auto connection = std::make_shared<Connection>();
-    connection->instance = make_instance(connection->loader, &log);
-    return connection;
+// One for the whole program, and kept: NVIDIA's driver (580) refuses after some twenty instances that came and went.
+std::shared_ptr<const Connection> shared_connection() {
+    static const auto* const kept = new std::shared_ptr<const Connection>(connect(nullptr));
+    return *kept;
 }
 
 int preference(vk::PhysicalDeviceType type) {
@@ -229,7 +224,7 @@ bool ValidationLog::empty() const {
 
 Context::Context(const DeviceOptions& options) try {
     validation = read_switch(options, "validation", Switch::off) == Switch::on;
-    connection = validation ? validated_connection(validation_log) : shared_connection();
+    connection = validation ? connect(&validation_log) : shared_connection();
     if (validation) messenger = vk::raii::DebugUtilsMessengerEXT(connection->instance, messenger_info(validation_log));
     auto devices = devices_of(connection->instance);
     if (devices.empty())
