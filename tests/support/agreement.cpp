@@ -7,6 +7,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "support/device_run.h"
+
 namespace lampyris::test {
 
 Agreement agreement(const Rendered& a, const Rendered& b, double tolerance) {
