@@ -132,8 +132,14 @@ std::vector<Backend> tracers() {
     std::vector<Backend> result;
     for (const DeviceInfo& info : list_devices()) {
         if (info.index != 0 || info.backend == "cpu") continue;
-        result.push_back({info.backend, {{"ray_query", "off"}}, info.backend});
-        if (info.backend == "cpu-bvh2") result.back().settings.clear();
+        if (info.backend == "cpu-bvh2") {
+            result.push_back({info.backend, {}, info.backend});
+            continue;
+        }
+        for (const char* wide : {"off", "auto"})
+            result.push_back({"vulkan",
+                              {{"ray_query", "off"}, {"wide_reads", wide}},
+                              std::string("vulkan with wide reads ") + wide});
         const auto ray_query = info.features.find("ray_query");
         if (ray_query != info.features.end() && ray_query->second == "yes")
             result.push_back({"vulkan", {{"ray_query", "on"}}, "vulkan with ray query"});
@@ -245,6 +251,35 @@ TEST(Trace, OnlyInstances) {
     s.add_polygons(3, random_triangles(random, 20, 0.5f));
     for (int i = 0; i < 3; ++i) s.add_instance(1, scale_and_move(vec3(0.5f), random.point()));
     EXPECT_GT(compare(s.finish(), random_rays(random, 5000)), 0.1);
+}
+
+// The walk's comparisons with NaN are false: it must neither look at everything nor go round in a tree that is empty.
+TEST(Trace, RaysThatAreNotFiniteMeetNothing) {
+    Random random(20);
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
+    std::vector<Ray> rays;
+    for (const Ray& ray : random_rays(random, 60)) {
+        for (const float bad : {kNan, kInf, -kInf}) {
+            rays.push_back(ray);
+            (rays.size() % 2 ? rays.back().origin : rays.back().direction)[int(rays.size() / 2 % 3)] = bad;
+        }
+    }
+    for (const int count : {0, 1, 200}) {
+        SCOPED_TRACE(count);
+        TraceScene s;
+        if (count) s.add_polygons(3, random_triangles(random, count, 0.8f));
+        s.begin_object();
+        if (count) s.add_polygons(3, random_triangles(random, count, 0.8f));
+        for (int i = 0; i < 4; ++i) s.add_instance(1, scale_and_move(vec3(i == 3 ? 1e-38f : 0.5f), random.point()));
+        const Scene& scene = s.finish();
+        for (const Backend& backend : tracers()) {
+            if (backend.settings.contains("ray_query") && backend.settings.at("ray_query") == "on") continue;
+            for (const uvec4& hit : trace(backend, scene, rays)) {
+                ASSERT_EQ(hit.y, kernel::NONE) << backend.label;
+                ASSERT_EQ(hit.w, 0u) << backend.label;
+            }
+        }
+    }
 }
 
 TEST(Trace, DegenerateTrianglesAreMissed) {

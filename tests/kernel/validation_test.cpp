@@ -26,7 +26,7 @@ std::vector<std::map<std::string, std::string>> variants() {
     for (const DeviceInfo& info : list_devices()) {
         if (info.backend != "vulkan" || info.index != 0) continue;
         result.push_back({{"ray_query", "off"}});
-        result.push_back({{"ray_query", "off"}, {"staging", "on"}});
+        result.push_back({{"ray_query", "off"}, {"wide_reads", "off"}, {"staging", "on"}});
         if (info.features.at("ray_query") == "yes") result.push_back({{"ray_query", "on"}, {"staging", "on"}});
     }
     return result;

@@ -108,9 +108,9 @@ bool offers_ray_query(const vk::raii::PhysicalDevice& device) {
 }
 
 bool offers_int64_atomics(const vk::raii::PhysicalDevice& device) {
-    const auto features = device.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>();
-    return features.get<vk::PhysicalDeviceFeatures2>().features.shaderInt64 &&
-           features.get<vk::PhysicalDeviceVulkan12Features>().shaderBufferInt64Atomics;
+    return device.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>()
+        .get<vk::PhysicalDeviceVulkan12Features>()
+        .shaderBufferInt64Atomics;
 }
 
 std::string driver_of(const vk::raii::PhysicalDevice& device) {
@@ -141,7 +141,8 @@ Capabilities capabilities_of(const vk::raii::PhysicalDevice& device, uint32_t qu
             device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceAccelerationStructurePropertiesKHR>()
                 .get<vk::PhysicalDeviceAccelerationStructurePropertiesKHR>()
                 .maxPrimitiveCount;
-    can.int64_atomics = offers_int64_atomics(device);
+    can.int64 = device.getFeatures().shaderInt64;
+    can.int64_atomics = can.int64 && offers_int64_atomics(device);
     can.flushes_denormals =
         device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceFloatControlsProperties>()
             .get<vk::PhysicalDeviceFloatControlsProperties>()
@@ -252,7 +253,7 @@ Context::Context(const DeviceOptions& options) try {
                        vk::PhysicalDeviceAccelerationStructureFeaturesKHR, vk::PhysicalDeviceRayQueryFeaturesKHR>
         chain;
     chain.get<vk::DeviceCreateInfo>().setQueueCreateInfos(queues).setPEnabledExtensionNames(extensions);
-    chain.get<vk::PhysicalDeviceFeatures2>().features.shaderInt64 = can.int64_atomics;
+    chain.get<vk::PhysicalDeviceFeatures2>().features.shaderInt64 = can.int64;
     chain.get<vk::PhysicalDeviceVulkan12Features>().shaderBufferInt64Atomics = can.int64_atomics;
     chain.get<vk::PhysicalDeviceVulkan12Features>().bufferDeviceAddress = can.ray_query;
     if (can.ray_query) {

@@ -20,7 +20,7 @@ struct Capabilities {
     bool is_cpu = false, is_integrated = false;
     bool ray_query = false;
     uint64_t max_boxes = 0;  // of an acceleration structure
-    bool int64_atomics = false;
+    bool int64 = false, int64_atomics = false;
     bool flushes_denormals = false;  // of floats, when told to
     bool timestamps = false;
     double timestamp_ns = 1;  // per tick

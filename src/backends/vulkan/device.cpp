@@ -23,9 +23,9 @@ class VulkanDevice final : public Device {
         : context_(std::make_shared<Context>(options)),
           account_(std::make_shared<MemoryAccount>()),
           cache_(cache_folder(options)) {
-        check_settings(
-            "vulkan", options,
-            {"cache", "exact", "optimize", "precise", "ray_query", "specialise", "staging", "validation", "workgroup"});
+        check_settings("vulkan", options,
+                       {"cache", "exact", "optimize", "precise", "ray_query", "specialise", "staging", "validation",
+                        "wide_reads", "workgroup"});
         account_->limit = options.max_memory;
         shader_options_.precise = read_switch(options, "precise", Switch::on) != Switch::off;
         shader_options_.optimize = read_switch(options, "optimize", Switch::on) != Switch::off;
@@ -41,6 +41,13 @@ class VulkanDevice final : public Device {
         // A driver that traces on the CPU is slower at it than the BVH2 in the shader (measured: see docs/backends.md).
         shader_options_.ray_query = ray_query == Switch::on || (ray_query == Switch::automatic &&
                                                                 context_->can.ray_query && !context_->can.is_cpu);
+        const Switch wide_reads = read_switch(options, "wide_reads", Switch::automatic);
+        if (wide_reads == Switch::on && !context_->can.int64) {
+            throw MachineError(fmt::format("error: backend.wide_reads=on: {} ({}) has no integers of 64 bits",
+                                           context_->name, context_->driver));
+        }
+        shader_options_.wide_reads = wide_reads == Switch::on ||
+                                     (wide_reads == Switch::automatic && context_->can.int64 && context_->can.is_cpu);
         unfinished_ = std::make_unique<VulkanBuffer>(context_, account_, sizeof(uint32_t), "the unfinished flag",
                                                      BufferOptions{.read_back = true});
         unfinished_->fill_zero();

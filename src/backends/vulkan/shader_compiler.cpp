@@ -181,16 +181,16 @@ std::string shader_source(std::string_view kernel_file, const ShaderOptions& opt
     return fmt::format(
         "#version 460\n"
         "#extension GL_GOOGLE_include_directive : require\n"
-        "{}{}"
+        "{}{}{}{}"
         "#define KERNEL_TRACER_{} 1\n"
         "#define KERNEL_LOCAL_SIZE {}\n"
         "const uint kEffects = {:#x}u;\n"
         "{}{}"
         "#include \"core/kernel/entry.glsl\"\n",
-        int64 ? "#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require\n"
-                "#extension GL_EXT_shader_atomic_int64 : require\n"
-              : "",
-        ray_query ? "#extension GL_EXT_ray_query : require\n" : "", options.ray_query ? "ray_query" : "bvh2",
+        int64 || options.wide_reads ? "#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require\n" : "",
+        int64 ? "#extension GL_EXT_shader_atomic_int64 : require\n" : "",
+        ray_query ? "#extension GL_EXT_ray_query : require\n" : "",
+        options.wide_reads ? "#define KERNEL_WIDE_READS 1\n" : "", options.ray_query ? "ray_query" : "bvh2",
         options.local_size, options.effects, options.exact ? "#include \"core/kernel/exact.glsl\"\n" : "", includes);
 }
 

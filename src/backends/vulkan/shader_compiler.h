@@ -16,7 +16,8 @@ struct ShaderOptions {
     bool exact = false;            // quotients and square roots by core/kernel/exact.glsl
     bool flush_denormals = false;  // as the CPU does; only with `exact`
     bool optimize = true;
-    bool ray_query = false;  // trace with VK_KHR_ray_query instead of the BVH in the shader
+    bool ray_query = false;   // trace with VK_KHR_ray_query instead of the BVH in the shader
+    bool wide_reads = false;  // READ_PAIR by words of 64 bits (prelude.h)
     uint32_t local_size = 64;
 };
 

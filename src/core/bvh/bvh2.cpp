@@ -185,10 +185,11 @@ class Builder {
     uint32_t build_tree(std::vector<RTCBuildPrimitive>& items) {
         const auto root = static_cast<uint32_t>(result_.nodes.size());
         if (items.empty()) {
-            BvhNode node;
-            set_child(node, 0, root, kNowhere);
-            set_child(node, 1, root, kNowhere);
-            result_.nodes.push_back(node);
+            // A triangle without an area, which no ray meets: were it the root again, a walk that enters it would not end.
+            const uint32_t nothing = kLeafBit | 1u << 24 | uint32_t(result_.triangles.size() / 3);
+            result_.triangles.insert(result_.triangles.end(), 3, vec4(0.0f));
+            result_.nodes.emplace_back();
+            for (int side = 0; side < 2; ++side) set_child(result_.nodes[root], side, nothing, kNowhere);
             return root;
         }
         const EmbreeBvh bvh(rtcNewBVH(device_.get()));
@@ -221,13 +222,13 @@ class Builder {
         }
         result_.nodes.reserve(result_.nodes.size() + items.size());
         result_.triangles.reserve(result_.triangles.size() + 3 * items.size());
-        if (top->items) {  // a tree of one leaf: a node whose other side is empty
+        if (top->items) {  // a tree of one leaf: a node whose other side no ray meets
             Box box;
             for (uint32_t i = 0; i < top->count; ++i) box.extend(box_of(top->items[i]));
             result_.nodes.emplace_back();
             const uint32_t bits = leaf_bits({top->items, top->count});
             set_child(result_.nodes[root], 0, bits, box);
-            set_child(result_.nodes[root], 1, root, kNowhere);
+            set_child(result_.nodes[root], 1, bits, kNowhere);
             return root;
         }
         flatten(*top);

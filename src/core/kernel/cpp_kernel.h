@@ -90,6 +90,10 @@ inline uint atomic_compare_swap_u32(uint* place, uint expected, uint value) {
 inline void atomic_store_u32(uint* place, uint value) {
     std::atomic_ref<uint>(*place).store(value, std::memory_order_relaxed);
 }
+struct VecPair {
+    vec4 first;
+    vec4 second;
+};
 inline void report_unfinished(uint* flag) {
     if (flag) atomic_or_u32(flag, 1u);
 }

@@ -52,7 +52,7 @@ struct InstanceRecord {
     uvec4 data;  // first geometry, number of geometries, root node of its BVH, 1 if the transform swaps handedness
 };
 
-// Binary BVH node that holds both children's boxes (64 bytes). A child is an inner node (its index), or has the sign bit: a
+// Binary BVH node that holds both children's boxes (64 bytes; kernels read it as two pairs). A child is an inner node (its index), or has the sign bit: a
 // leaf, count << 24 | first primitive, or with a count of 0 an instance (its index).
 CONST uint BVH_LEAF = 0x80000000u;
 CONST uint BVH_DEPTH = 40u;  // of a tree, at most, in a scene without instances; and what the stack must hold

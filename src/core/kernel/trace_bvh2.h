@@ -3,23 +3,36 @@
 #define LAMPYRIS_KERNEL_TRACE_BVH2
 
 CONST uint BVH_STACK = HAS(EFFECT_INSTANCES) ? 68u : BVH_DEPTH;  // two trees, a mixed leaf, and the mark between them
-CONST uint BVH_LEAVE_INSTANCE = 0xffffffffu;                     // on the stack: below it lies the world
+// On the stack, and leaves to the walk: below it lies the world; below it lies nothing.
+CONST uint BVH_LEAVE_INSTANCE = 0xffffffffu;
+CONST uint BVH_END = 0xfffffffeu;
 
 // 1/x, but finite for 0, so that a box plane through the origin gives 0 and not NaN.
 FN float bvh_inverse(float x) { return abs(x) > 1e-20f ? 1.0f / x : copy_sign(1e20f, x); }
 
-// Where a ray enters a box, or 4e38-like infinity where it does not within [0, t_max]. Widened by the rounding of the slab
-// distances (Ize 2013, "Robust BVH Ray Traversal").
-FN float bvh_enter(vec3 low, vec3 high, vec3 o, vec3 inverse, float t_max) {
-    float ax = (low.x - o.x) * inverse.x;
-    float bx = (high.x - o.x) * inverse.x;
-    float ay = (low.y - o.y) * inverse.y;
-    float by = (high.y - o.y) * inverse.y;
-    float az = (low.z - o.z) * inverse.z;
-    float bz = (high.z - o.z) * inverse.z;
-    float near = max(max(min(ax, bx), min(ay, by)), max(min(az, bz), 0.0f));
-    float far = min(min(max(ax, bx), max(ay, by)), min(max(az, bz), t_max));
-    return near <= far * 1.0000004f ? near : INFINITE_DISTANCE;
+// Comparisons with NaN are false, and the walk would look at everything.
+FN bool bvh_is_finite(vec3 o, vec3 d) { return is_finite(o.x + o.y + o.z + d.x + d.y + d.z); }
+
+// Where a ray enters a box, or INFINITE_DISTANCE where it does not within [0, t_max]. Widened by the rounding of the slab
+// distances (Ize 2013, "Robust BVH Ray Traversal"). Planes are told apart by the direction's sign, and the choices are written
+// out, since GLSL's min and max have to care for NaN, at three instructions each on a CPU.
+FN float bvh_enter(IN(VecPair) box, vec3 o, vec3 inverse, float t_max) {
+    bool back_x = inverse.x < 0.0f;
+    bool back_y = inverse.y < 0.0f;
+    bool back_z = inverse.z < 0.0f;
+    float near_x = ((back_x ? box.second.x : box.first.x) - o.x) * inverse.x;
+    float near_y = ((back_y ? box.second.y : box.first.y) - o.y) * inverse.y;
+    float near_z = ((back_z ? box.second.z : box.first.z) - o.z) * inverse.z;
+    float far_x = ((back_x ? box.first.x : box.second.x) - o.x) * inverse.x;
+    float far_y = ((back_y ? box.first.y : box.second.y) - o.y) * inverse.y;
+    float far_z = ((back_z ? box.first.z : box.second.z) - o.z) * inverse.z;
+    near_x = near_x > near_y ? near_x : near_y;
+    near_z = near_z > 0.0f ? near_z : 0.0f;
+    near_x = near_x > near_z ? near_x : near_z;
+    far_x = far_x < far_y ? far_x : far_y;
+    far_z = far_z < t_max ? far_z : t_max;
+    far_x = far_x < far_z ? far_x : far_z;
+    return near_x <= far_x * 1.0000004f ? near_x : INFINITE_DISTANCE;
 }
 
 // Moeller and Trumbore 1997 by way of the unnormalised normal, from which shared code recomputes the distance. True where
@@ -40,10 +53,14 @@ FN bool bvh_triangle(vec3 v0, vec3 v1, vec3 v2, vec3 o, vec3 d, float t_max, OUT
     return t > 0.0f && t < t_max;
 }
 
-// The closest hit (or, with `any`, some hit) with 0 < t < t_max.
+// The closest hit (or, with `any_hit`, some hit) with 0 < t < t_max. A ray that is not finite meets nothing.
+//
+// Two loops, one in the other, so that the lanes of a GPU (or of a CPU's vector) that have found a leaf wait for the others, and
+// then look at their leaves together (Aila and Laine 2009, "Understanding the Efficiency of Ray Traversal on GPUs").
 FN bool bvh_walk(vec3 origin, vec3 direction, float t_max, bool any_hit, OUT(Hit) hit) {
-    uint stack[BVH_STACK];
-    uint depth = 0u;
+    uint stack[BVH_STACK + 2u];  // BVH_END lies below, and a place is written before it counts
+    stack[0] = BVH_END;
+    uint depth = 1u;
     vec3 o = origin;
     vec3 d = direction;
     vec3 inverse = vec3(bvh_inverse(d.x), bvh_inverse(d.y), bvh_inverse(d.z));
@@ -51,47 +68,51 @@ FN bool bvh_walk(vec3 origin, vec3 direction, float t_max, bool any_hit, OUT(Hit
     uint best = NONE;
     uint best_instance = 0u;
     uint instance = 0u;
-    uint node = scene[0].counts.z;
+    uint node = bvh_is_finite(o, d) ? scene[0].counts.z : BVH_END;
     bool finished = false;
     while (!finished) {
-        bool pop = true;
-        if ((node & BVH_LEAF) == 0u) {
-            float left = bvh_enter(vec3(bvh_nodes[node].left_min), vec3(bvh_nodes[node].left_max), o, inverse, t_best);
-            float right =
-                bvh_enter(vec3(bvh_nodes[node].right_min), vec3(bvh_nodes[node].right_max), o, inverse, t_best);
-            uint left_child = floatBitsToUint(bvh_nodes[node].left_min.w);
-            uint right_child = floatBitsToUint(bvh_nodes[node].left_max.w);
-            bool hits_left = left < INFINITE_DISTANCE;
-            bool hits_right = right < INFINITE_DISTANCE;
-            if (hits_left && hits_right) {
-                bool left_first = left <= right;
-                if (depth >= BVH_STACK) {
-                    REPORT_UNFINISHED();
-                    break;
-                }
-                stack[depth] = left_first ? right_child : left_child;
-                depth += 1u;
-                node = left_first ? left_child : right_child;
-                pop = false;
-            } else if (hits_left || hits_right) {
-                node = hits_left ? left_child : right_child;
-                pop = false;
+        while ((node & BVH_LEAF) == 0u) {
+            VecPair left = READ_PAIR(bvh_nodes, 2u * node);
+            VecPair right = READ_PAIR(bvh_nodes, 2u * node + 1u);
+            float enter_left = bvh_enter(left, o, inverse, t_best);
+            float enter_right = bvh_enter(right, o, inverse, t_best);
+            uint left_child = floatBitsToUint(left.first.w);
+            uint right_child = floatBitsToUint(left.second.w);
+            bool left_first = enter_left <= enter_right;
+            node = left_first ? left_child : right_child;
+            // Stored whether the ray meets it or not: lanes that skip a store cost a CPU more than the store.
+            stack[depth] = left_first ? right_child : left_child;
+            if ((left_first ? enter_right : enter_left) < INFINITE_DISTANCE) depth += 1u;
+            if ((left_first ? enter_left : enter_right) >= INFINITE_DISTANCE) {
+                depth -= 1u;
+                node = stack[depth];
             }
-        } else if (HAS(EFFECT_INSTANCES) && (node & 0x7f000000u) == 0u) {
-            if (depth >= BVH_STACK) {
-                REPORT_UNFINISHED();
+            if (depth > BVH_STACK + 1u) {
+                node = 0u;
                 break;
             }
+        }
+        if ((node & BVH_LEAF) == 0u) break;  // the stack is full, or the driver ended the loop
+        if (node == BVH_END) {
+            finished = true;
+        } else if (HAS(EFFECT_INSTANCES) && node == BVH_LEAVE_INSTANCE) {
+            instance = 0u;
+            o = origin;
+            d = direction;
+            inverse = vec3(bvh_inverse(d.x), bvh_inverse(d.y), bvh_inverse(d.z));
+            depth -= 1u;
+            node = stack[depth];
+        } else if (HAS(EFFECT_INSTANCES) && (node & 0x7f000000u) == 0u) {
             stack[depth] = BVH_LEAVE_INSTANCE;
             depth += 1u;
+            if (depth > BVH_STACK + 1u) break;
             instance = node & 0x00ffffffu;
             o = transform_point(instances[instance].transform.from0, instances[instance].transform.from1,
                                 instances[instance].transform.from2, origin);
             d = transform_vector(instances[instance].transform.from0, instances[instance].transform.from1,
                                  instances[instance].transform.from2, direction);
             inverse = vec3(bvh_inverse(d.x), bvh_inverse(d.y), bvh_inverse(d.z));
-            node = instances[instance].data.z;
-            pop = false;
+            node = bvh_is_finite(o, d) ? instances[instance].data.z : BVH_LEAVE_INSTANCE;
         } else {
             uint first = node & 0x00ffffffu;
             uint end = first + ((node >> 24u) & 0x7fu);
@@ -118,26 +139,13 @@ FN bool bvh_walk(vec3 origin, vec3 direction, float t_max, bool any_hit, OUT(Hit
             }
             if (any_hit && best != NONE) {
                 finished = true;
-                pop = false;
-            }
-        }
-        if (pop) {
-            if (HAS(EFFECT_INSTANCES) && depth > 0u && stack[depth - 1u] == BVH_LEAVE_INSTANCE) {
-                depth -= 1u;
-                instance = 0u;
-                o = origin;
-                d = direction;
-                inverse = vec3(bvh_inverse(d.x), bvh_inverse(d.y), bvh_inverse(d.z));
-            }
-            if (depth == 0u) {
-                finished = true;
             } else {
                 depth -= 1u;
                 node = stack[depth];
             }
         }
     }
-    if (!finished) REPORT_UNFINISHED();  // the driver ended the loop
+    if (!finished) REPORT_UNFINISHED();
     hit.instance = 0u;
     hit.geometry = NONE;
     hit.primitive = NONE;
