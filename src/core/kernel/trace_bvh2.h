@@ -14,8 +14,9 @@ FN float bvh_inverse(float x) { return abs(x) > 1e-20f ? 1.0f / x : copy_sign(1e
 FN bool bvh_is_finite(vec3 o, vec3 d) { return is_finite(o.x + o.y + o.z + d.x + d.y + d.z); }
 
 // Where a ray enters a box, or INFINITE_DISTANCE where it does not within [0, t_max]. Widened by the rounding of the slab
-// distances (Ize 2013, "Robust BVH Ray Traversal"). Planes are told apart by the direction's sign, and the choices are written
-// out, since GLSL's min and max have to care for NaN, at three instructions each on a CPU.
+// distances (Ize 2013, "Robust BVH Ray Traversal"). Planes are told apart by the direction's sign. Their distances are compared as
+// integers: the bits of floats that are not negative are in their order, and a negative one loses against 0 here, or makes the box a
+// miss below. GLSL's min and max of floats have to care for NaN, at three instructions each on a CPU.
 FN float bvh_enter(IN(VecPair) box, vec3 o, vec3 inverse, float t_max) {
     bool back_x = inverse.x < 0.0f;
     bool back_y = inverse.y < 0.0f;
@@ -26,13 +27,11 @@ FN float bvh_enter(IN(VecPair) box, vec3 o, vec3 inverse, float t_max) {
     float far_x = ((back_x ? box.first.x : box.second.x) - o.x) * inverse.x;
     float far_y = ((back_y ? box.first.y : box.second.y) - o.y) * inverse.y;
     float far_z = ((back_z ? box.first.z : box.second.z) - o.z) * inverse.z;
-    near_x = near_x > near_y ? near_x : near_y;
-    near_z = near_z > 0.0f ? near_z : 0.0f;
-    near_x = near_x > near_z ? near_x : near_z;
-    far_x = far_x < far_y ? far_x : far_y;
-    far_z = far_z < t_max ? far_z : t_max;
-    far_x = far_x < far_z ? far_x : far_z;
-    return near_x <= far_x * 1.0000004f ? near_x : INFINITE_DISTANCE;
+    int near_bits = max(max(floatBitsToInt(near_x), floatBitsToInt(near_y)), max(floatBitsToInt(near_z), 0));
+    int far_bits =
+        min(min(floatBitsToInt(far_x), floatBitsToInt(far_y)), min(floatBitsToInt(far_z), floatBitsToInt(t_max)));
+    float near = intBitsToFloat(near_bits);
+    return near <= intBitsToFloat(far_bits) * 1.0000004f ? near : INFINITE_DISTANCE;
 }
 
 // Moeller and Trumbore 1997 by way of the unnormalised normal, from which shared code recomputes the distance. True where
