@@ -3,9 +3,9 @@
 #define LAMPYRIS_KERNEL_TRACE_BVH2
 
 CONST uint BVH_STACK = HAS(EFFECT_INSTANCES) ? 68u : BVH_DEPTH;  // two trees, a mixed leaf, and the mark between them
-// On the stack, and leaves to the walk: below it lies the world; below it lies nothing.
-CONST uint BVH_LEAVE_INSTANCE = 0xffffffffu;
-CONST uint BVH_END = 0xfffffffeu;
+// Marks on the stack. They have the leaf's bit, so that the inner loop stops at them as at leaves.
+CONST uint BVH_LEAVE_INSTANCE = 0xffffffffu;  // below it lies the world
+CONST uint BVH_END = 0xfffffffeu;             // below it lies nothing
 
 // 1/x, but finite for 0, so that a box plane through the origin gives 0 and not NaN.
 FN float bvh_inverse(float x) { return abs(x) > 1e-20f ? 1.0f / x : copy_sign(1e20f, x); }
