@@ -28,7 +28,12 @@ install(DIRECTORY src/core DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lampyris FILE
 install(DIRECTORY src/accel src/integrators DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lampyris
   FILES_MATCHING PATTERN *.gather.h PATTERN *.consumer.h PATTERN *.layout.h PATTERN *.params.h
   PATTERN *.functions.h)
-install(FILES ${abi_header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lampyris/core)
+# Installed files keep the dates of their sources, which may be before a plugin's last build. This one has the date at which
+# it came to say something else, and all of a plugin is built again after that.
+install(CODE "
+  set(abi_header \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}/lampyris/core/plugin_abi.h\")
+  file(COPY_FILE \"${abi_header}\" \"\${abi_header}\" ONLY_IF_DIFFERENT)
+  list(APPEND CMAKE_INSTALL_MANIFEST_FILES \"\${abi_header}\")")
 set(LAMPYRIS_KERNELS ${CMAKE_INSTALL_INCLUDEDIR}/lampyris)
 configure_package_config_file(cmake/LampyrisConfig.cmake.in ${PROJECT_BINARY_DIR}/LampyrisConfig.cmake
   INSTALL_DESTINATION ${package_dir} PATH_VARS LAMPYRIS_KERNELS)

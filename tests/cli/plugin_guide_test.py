@@ -3,25 +3,14 @@ with --plugin, and give the image whose answer the scene's comment derives, on e
 
 import os
 import re
-import subprocess
 
 import numpy as np
 import pytest
 
+from support.plugin_project import build, configure, run, write_files
+
 FACING_MEAN = 2.0 / 3.0  # of sqrt(1 - r^2) over the unit disc
 FACING_SQUARED_MEAN = 1.0 / 2.0
-
-
-def run(*command, **options):
-    return subprocess.run(
-        [str(word) for word in command], capture_output=True, text=True, timeout=600, check=False, **options
-    )
-
-
-def checked(*command, **options):
-    done = run(*command, **options)
-    assert done.returncode == 0, f"{done.args}\n{done.stdout}{done.stderr}"
-    return done
 
 
 def guide_files(source_dir):
@@ -47,18 +36,13 @@ def test_the_guide_shows_the_example(source_dir):
 
 
 @pytest.fixture(scope="module")
-def outside(source_dir, build_dir, tmp_path_factory):
-    """An installed Lampyris, and the guide's plugin built against it, with nothing of this tree but the guide."""
+def outside(source_dir, installed, tmp_path_factory):
+    """The guide's plugin, built against an installed Lampyris with nothing of this tree but the guide."""
     folder = tmp_path_factory.mktemp("outside")
-    checked("cmake", "--install", build_dir, "--prefix", folder / "lampyris")
-    (folder / "facing").mkdir()
-    for name, text in guide_files(source_dir).items():
-        (folder / "facing" / name).write_text(text)
-    prefix = f"-DCMAKE_PREFIX_PATH={folder / 'lampyris'}"
-    checked(
-        "cmake", "-S", "facing", "-B", "facing/build", "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", prefix, cwd=folder
-    )
-    checked("cmake", "--build", "facing/build", cwd=folder)
+    (folder / "lampyris").symlink_to(installed)
+    write_files(folder / "facing", guide_files(source_dir))
+    configure(folder / "facing", installed, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release")
+    build(folder / "facing")
     return folder
 
 

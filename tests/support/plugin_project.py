@@ -1,0 +1,83 @@
+"""Builds plugins outside of the tree, against an installed Lampyris."""
+
+import subprocess
+
+# A photon map that tests every photon.
+EVERY = {
+    "CMakeLists.txt": """cmake_minimum_required(VERSION 3.25)
+project(every LANGUAGES CXX)
+find_package(Lampyris REQUIRED)
+lampyris_add_plugin(every SOURCES every.cpp GATHERS every.gather.h)
+""",
+    "every.gather.h": """// Tests every photon.
+#include "core/kernel/gather.h"
+
+BUFFER_RO(1, uvec4, arguments)
+BUFFER_RO(2, PhotonRecord, photons)
+
+KERNEL(every) {
+    vec4 q = queries[index];
+    if (q.w < 0.0f) return;
+    Gathered gathered = gather_begin(index);
+    for (uint i = 0u; i < arguments[0].x; ++i) {
+        float d2;
+        if (in_range(photon_position(photons[i]), vec3(q), q.w, d2)) gather_add(gathered, index, photons[i], d2, 1.0f);
+    }
+    gather_end(gathered, index);
+}
+""",
+    "every.cpp": """#include "core/photon_map.h"
+
+namespace {
+
+struct EveryParams {};
+#define EVERY_PARAMS(P)
+
+class Every : public lampyris::PhotonMap {
+ public:
+    EveryParams params;
+    lampyris::PhotonMapCapabilities capabilities() const override { return {.exact = true}; }
+
+ protected:
+    std::vector<std::string> kernels() const override { return {}; }
+    void construct(const lampyris::PhotonSet& photons) override {
+        upload("arguments", glm::uvec4(photons.count, 0, 0, 0));
+    }
+    std::vector<lampyris::BufferHandle> gather_buffers() const override {
+        return {kept("arguments"), photons_.photons};
+    }
+};
+
+REGISTER_PHOTON_MAP(Every, EVERY_PARAMS, "every", "Tests every photon.")
+
+}  // namespace
+""",
+}
+
+
+def run(*command, **options):
+    return subprocess.run(
+        [str(word) for word in command], capture_output=True, text=True, timeout=600, check=False, **options
+    )
+
+
+def checked(*command, **options):
+    done = run(*command, **options)
+    assert done.returncode == 0, f"{done.args}\n{done.stdout}{done.stderr}"
+    return done
+
+
+def write_files(folder, files):
+    for name, text in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+
+
+def configure(folder, installed, *options):
+    """Configures `folder`, whose build goes to its subfolder `build`."""
+    checked("cmake", "-S", folder, "-B", folder / "build", f"-DCMAKE_PREFIX_PATH={installed}", *options)
+
+
+def build(folder):
+    checked("cmake", "--build", folder / "build")
