@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Renders the demo scene on both backends, compares the images, and writes a page that shows them.
+"""Renders the demo scene by two methods at equal time on both backends, and writes a page that compares them.
 
 Run by ./dev demo; needs nothing but Python's standard library and the program.
 """
@@ -15,10 +15,13 @@ import sys
 from pathlib import Path
 
 BACKENDS = {"cpu": "CPU", "vulkan": "Vulkan"}
+METHODS = {"path": "path", "sppm": "sppm:photonsperiteration=500000"}  # as --integrator takes them
+RUNS = [(method, backend) for backend in BACKENDS for method in METHODS]
 ROOT = Path(__file__).resolve().parent.parent
 SCENE = ROOT / "scenes/demo/scene.pbrt"
 REFERENCE = ROOT / "scenes/demo/reference.exr"  # and .png
 PAGE = ROOT / "tools/demo.html"
+AGREEMENT_PASSES = 2
 
 
 def call(program, *arguments, capture=False):
@@ -47,11 +50,11 @@ def equal_share(a, b):
     return sum(a[3 * i : 3 * i + 3] == b[3 * i : 3 * i + 3] for i in range(pixels)) / pixels
 
 
-def render(program, folder, backend, samples):
-    outputs = [word for suffix in ["exr", "png", "pfm"] for word in ["-o", folder / f"{backend}.{suffix}"]]
-    stats = folder / f"{backend}.json"
-    spp = ["--spp", samples] if samples else []
-    call(program, "render", SCENE, *outputs, "--backend", backend, "--stats", stats, *spp, capture=True)
+def render(program, folder, name, method, backend, budget):
+    outputs = [word for suffix in ["exr", "png", "pfm"] for word in ["-o", folder / f"{name}.{suffix}"]]
+    stats = folder / f"{name}.json"
+    choice = ["--integrator", METHODS[method], "--backend", backend]
+    call(program, "render", SCENE, *outputs, *choice, "--stats", stats, *budget, capture=True)
     return json.loads(stats.read_text())
 
 
@@ -61,17 +64,16 @@ def compare(program, folder, image, reference, error_image):
 
 
 def rows(stats, errors):
-    """The comparison: (what, [a value for each backend], how it is meant)."""
-    runs = [stats[backend] for backend in BACKENDS]
-    against = [errors[backend] for backend in BACKENDS]
+    """The comparison: (what, [a value for each run], how it is meant)."""
+    runs = [stats[run] for run in RUNS]
+    against = [errors[run] for run in RUNS]
     setup = [sum(run["setup_s"].values()) for run in runs]
     return [
-        ("device", [run["device"] for run in runs], ""),
         ("rendering", [f"{run['wall_s']:.1f} s" for run in runs], "wall-clock seconds, without set-up"),
         ("set-up", [f"{seconds:.1f} s" for seconds in setup], "reading, building, compiling"),
-        ("samples per pixel", [f"{run['samples_per_pixel']:g}" for run in runs], ""),
+        ("passes", [f"{run['passes']}" for run in runs], "one sample per pixel each"),
         ("rays", [f"{run['rays'] / 1e6:.1f} M" for run in runs], "shadow rays included"),
-        ("rays per second", [f"{run['rays'] / run['wall_s'] / 1e6:.2f} M" for run in runs], ""),
+        ("photon paths", [f"{run['photons_emitted'] / 1e6:.1f} M" for run in runs], ""),
         ("relMSE", [f"{error['relmse']:.4f}" for error in against], "mean of (I - R)² / (R² + 0.01), to the reference"),
         ("FLIP", [f"{error['flip']:.4f}" for error in against], "perceived difference to the reference"),
         (
@@ -82,51 +84,58 @@ def rows(stats, errors):
     ]
 
 
-def print_table(table, equal):
-    names = list(BACKENDS.values())
-    figures = table[1:]  # the first row, the devices' names, is too wide for a column
-    width = max(len(row[0]) for row in figures)
-    columns = [max(len(names[i]), *(len(row[1][i]) for row in figures)) for i in range(len(names))]
-    for name, device in zip(names, table[0][1], strict=True):
-        print(f"{name}: {device}")
+def agreement(equal):
+    return f"{equal:.2%} of the pixels are equal to the bit on both backends (sppm, {AGREEMENT_PASSES} passes)."
+
+
+def print_table(stats, table, equal):
+    for backend, name in BACKENDS.items():
+        print(f"{name}: {stats['sppm', backend]['device']}")
+    width = max(len(row[0]) for row in table)
+    columns = [max(6, *(len(row[1][i]) for row in table)) for i in range(len(RUNS))]
+    heads = [[BACKENDS[backend] for _, backend in RUNS], [method for method, _ in RUNS]]
     print()
-    print(" " * width, *(name.rjust(size) for name, size in zip(names, columns, strict=True)), sep="  ")
-    for name, values, meaning in figures:
+    for name, values, meaning in [*(("", head, "") for head in heads), *table]:
         cells = [value.rjust(size) for value, size in zip(values, columns, strict=True)]
         print(name.ljust(width), *cells, meaning, sep="  ")
-    print(f"\n{equal:.2%} of the pixels are equal to the bit on both backends.")
+    print(f"\n{agreement(equal)}")
 
 
 def embedded(path):
     return "data:image/png;base64," + base64.b64encode(path.read_bytes()).decode()
 
 
-def write_page(folder, stats, table, equal):
-    head = "".join(f'<th scope="col">{name}</th>' for name in BACKENDS.values())
+def caption(stats, error):
+    return f"{stats['wall_s']:.1f} s, {stats['passes']} passes: relMSE {error['relmse']:.3f}, FLIP {error['flip']:.3f}"
+
+
+def write_page(folder, stats, errors, table, equal):
     body = ""
     for name, values, meaning in table:
         cells = "".join(f"<td>{html.escape(value)}</td>" for value in values)
         note = f"<small>{html.escape(meaning)}</small>" if meaning else ""
         body += f'<tr><th scope="row">{html.escape(name)}{note}</th>{cells}</tr>\n'
     effects = ""
-    for effect in stats["cpu"]["effects"]:
+    for effect in stats["sppm", "cpu"]["effects"]:
         asked_by = effect["asked_by"].removeprefix(f"{SCENE.parent}/")
         effects += f"<li><b>{html.escape(effect['name'])}</b> <span>{html.escape(asked_by)}</span></li>\n"
     values = {
-        "cpu": embedded(folder / "cpu.png"),
-        "vulkan": embedded(folder / "vulkan.png"),
         "reference": embedded(REFERENCE.with_suffix(".png")),
-        "error": embedded(folder / "error.png"),
         "difference": embedded(folder / "difference.png"),
-        "width": str(stats["cpu"]["resolution"][0]),
-        "height": str(stats["cpu"]["resolution"][1]),
-        "samples": f"{stats['cpu']['samples_per_pixel']:g}",
-        "equal": f"{equal:.2%}",
-        "head": head,
+        "width": str(stats["sppm", "cpu"]["resolution"][0]),
+        "height": str(stats["sppm", "cpu"]["resolution"][1]),
+        "seconds": f"{stats['sppm', 'cpu']['wall_s']:.0f}",
+        "agreement": agreement(equal),
         "body": body,
         "effects": effects,
-        "version": html.escape(str(stats["cpu"]["version"])),
+        "sppm": METHODS["sppm"],
+        "version": html.escape(str(stats["sppm", "cpu"]["version"])),
     }
+    for method, backend in RUNS:
+        values[f"{method}_{backend}"] = embedded(folder / f"{method}-{backend}.png")
+        values[f"{method}_{backend}_error"] = embedded(folder / f"{method}-{backend}-error.png")
+        values[f"{method}_{backend}_caption"] = caption(stats[method, backend], errors[method, backend])
+        values[f"{backend}_device"] = html.escape(stats[method, backend]["device"])
     (folder / "index.html").write_text(string.Template(PAGE.read_text()).substitute(values))
 
 
@@ -134,22 +143,32 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--program", type=Path, default=ROOT / "build/release/lampyris")
     parser.add_argument("--output", type=Path, default=ROOT / "build/demo", help="folder to write into")
-    parser.add_argument("--spp", type=int, help="samples per pixel, instead of the scene's")
+    parser.add_argument("--seconds", type=float, default=8, help="what each method may take on each backend")
+    parser.add_argument("--passes", type=int, help="passes of each method, instead of a time")
     options = parser.parse_args()
     program, folder = options.program.resolve(), options.output
     folder.mkdir(parents=True, exist_ok=True)
+    budget = ["--passes", options.passes] if options.passes else ["--time", f"{options.seconds}s"]
+
+    # First, as it compiles what the others run again.
+    print(
+        f"Rendering {AGREEMENT_PASSES} passes of sppm on each backend; Vulkan compiles its shaders at first", flush=True
+    )
+    for backend in BACKENDS:
+        render(program, folder, f"agreement-{backend}", "sppm", backend, ["--passes", AGREEMENT_PASSES])
+    compare(program, folder, folder / "agreement-vulkan.exr", folder / "agreement-cpu.exr", "difference.png")
+    equal = equal_share(*(read_floats(folder / f"agreement-{backend}.pfm") for backend in BACKENDS))
 
     stats, errors = {}, {}
-    for backend, name in BACKENDS.items():
-        print(f"Rendering on {name}", flush=True)
-        stats[backend] = render(program, folder, backend, options.spp)
-        errors[backend] = compare(program, folder, folder / f"{backend}.exr", REFERENCE, "error.png")
-    compare(program, folder, folder / "vulkan.exr", folder / "cpu.exr", "difference.png")
-    equal = equal_share(read_floats(folder / "cpu.pfm"), read_floats(folder / "vulkan.pfm"))
+    for method, backend in RUNS:
+        print(f"Rendering by {method} on {BACKENDS[backend]}", flush=True)
+        name = f"{method}-{backend}"
+        stats[method, backend] = render(program, folder, name, method, backend, budget)
+        errors[method, backend] = compare(program, folder, folder / f"{name}.exr", REFERENCE, f"{name}-error.png")
 
     table = rows(stats, errors)
-    print_table(table, equal)
-    write_page(folder, stats, table, equal)
+    print_table(stats, table, equal)
+    write_page(folder, stats, errors, table, equal)
     print(f"Images and figures: {folder}; the page: {(folder / 'index.html').resolve().as_uri()}")
 
 
