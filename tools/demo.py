@@ -133,7 +133,8 @@ def write_page(folder, stats, errors, table, equal):
     }
     for method, backend in RUNS:
         values[f"{method}_{backend}"] = embedded(folder / f"{method}-{backend}.png")
-        values[f"{method}_{backend}_error"] = embedded(folder / f"{method}-{backend}-error.png")
+        if backend == "cpu":
+            values[f"{method}_{backend}_error"] = embedded(folder / f"{method}-{backend}-error.png")
         values[f"{method}_{backend}_caption"] = caption(stats[method, backend], errors[method, backend])
         values[f"{backend}_device"] = html.escape(stats[method, backend]["device"])
     (folder / "index.html").write_text(string.Template(PAGE.read_text()).substitute(values))

@@ -41,6 +41,8 @@ def test_without_a_command_the_help_goes_to_standard_error(source_dir):
         (["--frobnicate", "build"], "unknown option '--frobnicate'"),
         (["build", "fast"], "unknown kind 'fast'; there are release, debug and asan"),
         (["build", "--fast"], "build: unknown option '--fast'"),
+        (["build", "release", "--fast"], "build: unknown option '--fast'"),
+        (["build", "release", "all", "fast"], "build: unknown option 'fast'"),
         (["test", "--short"], "test: unknown option '--short'"),
         (["test", "-R"], "test: -R needs a regular expression"),
         (["bench", "-x"], "bench: unknown option '-x'"),
