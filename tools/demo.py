@@ -144,7 +144,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--program", type=Path, default=ROOT / "build/release/lampyris")
     parser.add_argument("--output", type=Path, default=ROOT / "build/demo", help="folder to write into")
-    parser.add_argument("--seconds", type=float, default=8, help="what each method may take on each backend")
+    parser.add_argument("--seconds", type=float, default=12, help="what each method may take on each backend")
     parser.add_argument("--passes", type=int, help="passes of each method, instead of a time")
     options = parser.parse_args()
     program, folder = options.program.resolve(), options.output
