@@ -3,6 +3,7 @@
 
 #include "core/kernel_types.h"
 
+#include <concepts>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,7 +18,17 @@ struct EffectRequest {
 // A set computed from the description, not a user's switch.
 class Effects {
  public:
-    void ask(uint32_t effect, const std::string& asked_by);  // the first one to ask is remembered
+    // The first one to ask is remembered. Where who asks is a function, it is called for the first alone: to find a place in
+    // a file takes time.
+    template <typename AskedBy>
+    void ask(uint32_t effect, const AskedBy& asked_by) {
+        if (mask_ & effect) return;
+        mask_ |= effect;
+        if constexpr (std::invocable<const AskedBy&>)
+            requests_.push_back({effect, asked_by()});
+        else
+            requests_.push_back({effect, asked_by});
+    }
     uint32_t mask() const { return mask_; }
     bool has(uint32_t effect) const { return (mask_ & effect) != 0; }
     const std::vector<EffectRequest>& requests() const { return requests_; }

@@ -20,26 +20,39 @@ char printable(char c) {
 }  // namespace
 
 uint32_t Sources::add(std::string name, std::string_view text, std::shared_ptr<const void> owner) {
-    sources_.push_back({std::move(name), {}, text, std::move(owner)});
+    sources_.push_back({std::move(name), {}, text, std::move(owner), {}});
     return static_cast<uint32_t>(sources_.size() - 1);
 }
 
 uint32_t Sources::add_owned(std::string name, std::string text) {
-    sources_.push_back({std::move(name), std::move(text), {}, {}});
+    sources_.push_back({std::move(name), std::move(text), {}, {}, {}});
     sources_.back().text = sources_.back().owned;
     return static_cast<uint32_t>(sources_.size() - 1);
 }
 
 std::string_view Sources::text(uint32_t file) const { return file < sources_.size() ? sources_[file].text : ""; }
 
+Sources::BlockStart Sources::line_of(const Source& source, uint64_t offset) {
+    const auto pass = [&](BlockStart line, uint64_t from, uint64_t to) {
+        const std::string_view part = source.text.substr(from, to - from);
+        line.lines_before += static_cast<uint64_t>(std::count(part.begin(), part.end(), '\n'));
+        const size_t newline = part.rfind('\n');
+        if (newline != std::string_view::npos) line.line_start = from + newline + 1;
+        return line;
+    };
+    std::vector<BlockStart>& blocks = source.blocks;
+    if (blocks.empty()) blocks.emplace_back();
+    while (blocks.size() <= offset / kBlock)
+        blocks.push_back(pass(blocks.back(), (blocks.size() - 1) * kBlock, blocks.size() * kBlock));
+    return pass(blocks[offset / kBlock], offset / kBlock * kBlock, offset);
+}
+
 Sources::Place Sources::place(Location location) const {
     if (location.file >= sources_.size()) return {};
     const Source& source = sources_[location.file];
-    const std::string_view before = source.text.substr(0, std::min<uint64_t>(location.offset, source.text.size()));
-    const size_t newline = before.rfind('\n');
-    const size_t line_start = newline == std::string_view::npos ? 0 : newline + 1;
-    return {source.name, 1 + static_cast<uint64_t>(std::count(before.begin(), before.end(), '\n')),
-            before.size() - line_start + 1};
+    const uint64_t offset = std::min<uint64_t>(location.offset, source.text.size());
+    const BlockStart line = line_of(source, offset);
+    return {source.name, line.lines_before + 1, offset - line.line_start + 1};
 }
 
 std::string Sources::describe(Location location) const {
@@ -50,10 +63,12 @@ std::string Sources::describe(Location location) const {
 
 std::string Sources::excerpt(Location location) const {
     if (location.file >= sources_.size()) return {};
-    const std::string_view text = sources_[location.file].text;
-    const size_t offset = std::min<uint64_t>(location.offset, text.size());
-    const size_t newline = text.substr(0, offset).rfind('\n');
-    size_t start = newline == std::string_view::npos ? 0 : newline + 1;
+    const Source& source = sources_[location.file];
+    const size_t offset = std::min<uint64_t>(location.offset, source.text.size());
+    size_t start = line_of(source, offset).line_start;
+    // No further than is shown: a line may be as long as its file.
+    const std::string_view text =
+        source.text.substr(0, offset + std::min(source.text.size() - offset, 2 * kMaxExcerpt));
     size_t stop = std::min(text.find_first_of("\r\n", offset), text.size());
     // A window of a long line, with the place inside it and cut between characters.
     std::string prefix, suffix;
@@ -186,8 +201,11 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
 }
 
 std::string list_of(const std::vector<std::string>& candidates) {
+    constexpr size_t kMostListed = 100;  // no list of what Lampyris knows is as long; what a scene defines may be
     std::string text;
-    for (const std::string& candidate : candidates) text += (text.empty() ? "" : ", ") + candidate;
+    for (size_t i = 0; i < std::min(candidates.size(), kMostListed); ++i)
+        text += (text.empty() ? "" : ", ") + candidates[i];
+    if (candidates.size() > kMostListed) text += " and " + std::to_string(candidates.size() - kMostListed) + " more";
     return text;
 }
 

@@ -48,7 +48,7 @@ struct Location {
 
 // The texts that were read, kept so that a Location can be shown as line, column and excerpt.
 // Text is kept by view, with a share of its owner (a mapped file) where one is handed over; otherwise the owner must
-// outlive Sources.
+// outlive Sources. Not for several threads at once: places are found by a table that grows as they are asked for.
 class Sources {
  public:
     uint32_t add(std::string name, std::string_view text, std::shared_ptr<const void> owner = nullptr);
@@ -65,14 +65,30 @@ class Sources {
         Location location) const;  // the line, a newline, and a caret below the place; long lines are cut
 
  private:
+    // What is known of the line in which a block of the text begins: so a place is found by looking at one block.
+    static constexpr uint64_t kBlock = 4096;
+    struct BlockStart {
+        uint64_t lines_before = 0;
+        uint64_t line_start = 0;
+    };
     struct Source {
         std::string name;
         std::string owned;
         std::string_view text;
         std::shared_ptr<const void> owner;
+        mutable std::vector<BlockStart> blocks;  // as far as was asked for
     };
+    // The line of an offset: how many come before it, and where it begins.
+    static BlockStart line_of(const Source& source, uint64_t offset);
     std::deque<Source> sources_;
 };
+
+// The nearest of `candidates` to `word` by edit distance, as " (did you mean \"x\"?)", or empty where none is near.
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
+// "a, b, c" in the order given; of very many, the first ones and how many more there are.
+std::string list_of(const std::vector<std::string>& candidates);
+// A piece of input fit to stand in a message: cut when long, without control characters.
+std::string shown(std::string_view text);
 
 // Collects the errors and warnings of one scene, so that they are reported together, in the order in which a reader of the
 // scene meets their causes: by file (in the order of reading) and place in it, whoever found them first.
@@ -96,6 +112,15 @@ class Diagnostics {
         const;  // formatted, with location; at most kMaxWarnings, and a line if there were more
     const std::vector<std::string>& unsupported_list() const { return skipped_; }  // "what (file:line)"
     bool full() const { return error_count_ > kMaxKept; }  // nobody will read a further error's text
+    // did_you_mean for names that a scene defines, of which there may be very many: `names` makes the list. Empty where no
+    // one will read it, or where so many names have been compared already that more would take seconds.
+    template <typename Names>
+    std::string guess(std::string_view word, const Names& names) {
+        if (full() || names_compared_ >= kMostNamesCompared) return {};
+        const std::vector<std::string> candidates = names();
+        names_compared_ += candidates.size();
+        return did_you_mean(word, candidates);
+    }
     size_t error_count() const { return error_count_; }
     std::vector<std::string> errors() const;  // formatted, the first kMaxShown
     static constexpr size_t kMaxShown = 20;
@@ -113,14 +138,9 @@ class Diagnostics {
     std::vector<Record> errors_, warnings_;
     std::vector<std::string> skipped_;
     size_t error_count_ = 0, warning_count_ = 0;
+    static constexpr size_t kMostNamesCompared = 1000000;
+    size_t names_compared_ = 0;
     bool skip_unsupported_ = false;
 };
-
-// The nearest of `candidates` to `word` by edit distance, as " (did you mean \"x\"?)", or empty where none is near.
-std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
-// "a, b, c" in the order given.
-std::string list_of(const std::vector<std::string>& candidates);
-// A piece of input fit to stand in a message: cut when long, without control characters.
-std::string shown(std::string_view text);
 
 }  // namespace lampyris

@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -112,6 +113,15 @@ void check_writable(const std::string& path) {
     if (fd < 0) fail(path, errno);
     ::close(fd);
     ::unlink(temporary.c_str());
+}
+
+std::vector<std::string> files_beside(const std::filesystem::path& path) {
+    std::error_code ignored;
+    std::vector<std::string> names;
+    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+    for (const auto& entry : fs::directory_iterator(folder, ignored)) names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names;
 }
 
 }  // namespace lampyris

@@ -3,9 +3,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace lampyris {
 
@@ -18,5 +20,8 @@ void write_file_atomically(const std::string& path, std::string_view text);
 // Throws what write_file_atomically would throw for a reason that can be known beforehand (no such folder: InputError;
 // no permission: MachineError), so that an hour of rendering does not end with it. Leaves no trace.
 void check_writable(const std::string& path);
+
+// The names of what lies in the folder of `path`, sorted: for guessing what was meant where there is no such file.
+std::vector<std::string> files_beside(const std::filesystem::path& path);
 
 }  // namespace lampyris

@@ -211,8 +211,14 @@ void ParameterReader::error(std::string_view name, std::string message, std::str
     diagnostics_->error(location(name), std::move(message), std::move(hint));
 }
 
-void ParameterReader::finish(const std::string& of_what) {
-    entity_->parameters.report_unused(of_what, spec_names(*specs_), *diagnostics_);
+void ParameterReader::warning(std::string_view name, std::string message, std::string hint) {
+    diagnostics_->warning(location(name), std::move(message), std::move(hint));
+}
+
+void ParameterReader::finish(std::string_view kind) {
+    if (entity_->parameters.all_used()) return;
+    entity_->parameters.report_unused(fmt::format("{} \"{}\"", kind, entity_->type), spec_names(*specs_),
+                                      *diagnostics_);
 }
 
 ParameterSpecs specs_of(const ParameterFields& fields) {

@@ -106,8 +106,9 @@ class ParameterReader {
 
     // A message at a parameter (or at the directive, where the parameter is absent).
     void error(std::string_view name, std::string message, std::string hint = {});
-    // Call last: what nobody asked for is an error that lists the known names.
-    void finish(const std::string& of_what);
+    void warning(std::string_view name, std::string message, std::string hint = {});
+    // Call last: what nobody asked for is an error that lists the known names. `kind` is that of the plugin ("shape").
+    void finish(std::string_view kind);
 
     const ParameterSpecs& specs() const { return *specs_; }
     Entity& entity() { return *entity_; }

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <random>
+
 using namespace lampyris;
 
 namespace {
@@ -32,6 +35,56 @@ TEST(Error, MistakesAreToldInTheOrderOfTheSource) {
         for (const std::string& error : errors) all += (all.empty() ? "" : "\n") + error;
         EXPECT_EQ(thrown.what(), all);
     }
+}
+
+// Lines and columns against counting from the file's start, asked for in any order: of short lines, of lines as long as the blocks
+// by which places are found, and of a file that is one line.
+TEST(Error, PlacesAreThoseOfCounting) {
+    std::string lines;
+    for (int i = 0; lines.size() < 50000; ++i) lines += std::string(size_t(i * i % 97), 'x') + (i % 3 ? "\n" : "\r\n");
+    std::string blocks;
+    for (const size_t length : {4095, 4096, 4097, 0, 0, 12288, 1}) blocks += std::string(length, 'y') + "\n";
+    std::mt19937 random(7);
+    for (const std::string& text : {lines, blocks, std::string(30000, 'z'), std::string()}) {
+        Sources sources;
+        const uint32_t file = sources.add_owned("a.pbrt", text);
+        std::vector<uint64_t> offsets{0, 1, 4095, 4096, 4097, 8192, text.size(), text.size() + 1};
+        for (int i = 0; i < 300; ++i)
+            offsets.push_back(std::uniform_int_distribution<uint64_t>(0, text.size())(random));
+        for (const uint64_t offset : offsets) {
+            const std::string before = text.substr(0, offset);
+            const size_t newline = before.rfind('\n');
+            const Sources::Place place = sources.place({file, offset});
+            EXPECT_EQ(place.line, 1 + uint64_t(std::count(before.begin(), before.end(), '\n'))) << offset;
+            EXPECT_EQ(place.column, before.size() - (newline == std::string::npos ? 0 : newline + 1) + 1) << offset;
+        }
+    }
+}
+
+// The excerpt of a place in a line that is very long ends where more would be cut anyway.
+TEST(Error, LongLinesAreCutAroundThePlace) {
+    Sources sources;
+    const uint32_t file =
+        sources.add_owned("a.pbrt", "first\n" + std::string(20000, 'a') + "!" + std::string(20000, 'b'));
+    EXPECT_EQ(sources.excerpt({file, 20006}),
+              "..." + std::string(50, 'a') + "!" + std::string(49, 'b') + "...\n" + std::string(53, ' ') + "^");
+    EXPECT_EQ(sources.excerpt({file, 6}), std::string(100, 'a') + "...\n^");
+}
+
+// Where a scene defines very many names, guessing what was meant must not take for ever.
+TEST(Error, GuessesAreLimited) {
+    Sources sources;
+    Diagnostics diagnostics(sources);
+    int asked = 0;
+    const auto names = [&] {
+        ++asked;
+        return std::vector<std::string>(300000, "glass");
+    };
+    EXPECT_EQ(diagnostics.guess("glas", names), " (did you mean \"glass\"?)");
+    for (int i = 0; i < 50; ++i) diagnostics.guess("glas", names);
+    EXPECT_LT(asked, 6);
+    std::vector<std::string> many(1234, "a");
+    EXPECT_TRUE(list_of(many).ends_with(", a and 1134 more"));
 }
 
 TEST(Error, WarningsToo) {

@@ -182,6 +182,13 @@ class Builder {
         return items;
     }
 
+    // Room for the whole of a large tree at once, but never for one small tree after the other: each would copy all before it.
+    template <typename T>
+    static void make_room(std::vector<T>& values, size_t more) {
+        if (values.size() + more > values.capacity())
+            values.reserve(std::max(values.size() + more, values.capacity() + values.capacity() / 2));
+    }
+
     uint32_t build_tree(std::vector<RTCBuildPrimitive>& items) {
         const auto root = static_cast<uint32_t>(result_.nodes.size());
         if (items.empty()) {
@@ -220,8 +227,8 @@ class Builder {
             throw MachineError(fmt::format(
                 "error: the BVH2 holds at most {} primitives; --backend cpu has no such limit", kMostPrimitives));
         }
-        result_.nodes.reserve(result_.nodes.size() + items.size());
-        result_.triangles.reserve(result_.triangles.size() + 3 * items.size());
+        make_room(result_.nodes, items.size());
+        make_room(result_.triangles, 3 * items.size());
         if (top->items) {  // a tree of one leaf: a node whose other side no ray meets
             Box box;
             for (uint32_t i = 0; i < top->count; ++i) box.extend(box_of(top->items[i]));

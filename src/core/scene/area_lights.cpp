@@ -27,11 +27,11 @@ AreaLight read_area_light(BuildContext& context, Entity& entity) {
         context.diagnostics.error(entity.type_location, message, hint);
         return light;
     }
-    light.asked_by = context.place(entity, "AreaLightSource");
+    light.asked_by = {&context, &entity, "AreaLightSource"};
     ParameterReader reader(area_light_registry().find_info(entity.type)->parameters, entity, context.diagnostics);
     AreaLightContext area_light{context, entity, reader, light};
     (*factory)(area_light);
-    reader.finish(fmt::format("area light \"{}\"", entity.type));
+    reader.finish("area light");
     light.valid = true;
     return light;
 }

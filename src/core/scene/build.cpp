@@ -61,12 +61,13 @@ BuiltScene build_scene(SceneDescription&& description, const BuildOptions& optio
     Scene& scene = built.scene;
     struct Parts {
         Parts(SceneDescription& d, const BuildOptions& o, Scene& s, SceneSettings& t, Diagnostics& g)
-            : context{d, o, s, t, g, textures, {}, {}, {}, {}, {}}, textures(context) {}
+            : context{d, o, s, t, g, textures, {}, {}, {}, {}, {}, {}}, textures(context) {}
         BuildContext context;
         TextureBuilder textures;
     } parts(description, options, scene, built.settings, diagnostics);
     BuildContext& context = parts.context;
 
+    context.choose_media();
     build_view(context);
     build_shapes(context);
     build_lights(context);

@@ -15,10 +15,12 @@ struct BuildOptions {
     std::optional<std::array<int, 2>> resolution;  // replaces the Film's
     // Pixels to render, x0 y0 x1 y1, half-open, in the full picture; replaces the Film's crop window.
     std::optional<std::array<int, 4>> crop;
+    std::optional<bool> media;  // whether media are simulated; replaces the Integrator's "media"
 };
 
 // What the scene file says about the run rather than about the world.
 struct SceneSettings {
+    bool media = true;  // false: left out, as pbrt-v4's "path" does
     Entity integrator;  // "path" where the file names none; its parameters are read by the integrator
     // How pbrt's sampler was mapped: SAMPLER_* kind by name.
     std::string sampler = "independent";  // "independent" or "sobol" (Owen-scrambled)

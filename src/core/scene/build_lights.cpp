@@ -24,13 +24,13 @@ void build_lights(BuildContext& context) {
         if (light.world_from_light.animated()) context.refuse_motion(light.world_from_light, light.location);
         ParameterReader reader(light_registry().find_info(light.type)->parameters, light, context.diagnostics);
         const size_t infinite = context.infinite_lights.size(), others = context.lights.size();
-        LightContext light_context{context, light, reader, context.place(light, "LightSource")};
+        LightContext light_context{context, light, reader, {&context, &light, "LightSource"}};
         (*factory)(light_context);
         const uint32_t medium = context.medium(light.medium) << 16;
         for (size_t i = infinite; i < context.infinite_lights.size(); ++i)
             context.infinite_lights[i].record.data.y |= medium;
         for (size_t i = others; i < context.lights.size(); ++i) context.lights[i].record.data.y |= medium;
-        reader.finish(fmt::format("light \"{}\"", light.type));
+        reader.finish("light");
     }
 }
 

@@ -42,8 +42,9 @@ void BuildContext::check_unused_materials() {
         if (built_materials.contains(i) || material.type.empty() || material.type == "none") continue;
         if (const PluginInfo* info = material_registry().find_info(material.type)) {
             for (const ParameterSpec& spec : info->parameters) material.parameters.find(spec.name);
-            material.parameters.report_unused(fmt::format("material \"{}\"", material.type),
-                                              spec_names(info->parameters), diagnostics);
+            if (!material.parameters.all_used())
+                material.parameters.report_unused(fmt::format("material \"{}\"", material.type),
+                                                  spec_names(info->parameters), diagnostics);
         } else if (std::find(std::begin(kUnsupported), std::end(kUnsupported), material.type) ==
                    std::end(kUnsupported)) {
             const auto [message, hint] = material_registry().unknown(material.type);
@@ -51,6 +52,15 @@ void BuildContext::check_unused_materials() {
                               hint);
         }
     }
+}
+
+uint32_t BuildContext::named_material(const std::string& name) {
+    if (named_materials.empty())
+        for (uint32_t i = 0; i < description.materials.size(); ++i)
+            if (const std::string& known = description.materials[i].name; !known.empty())
+                named_materials.try_emplace(known, i);
+    const auto found = named_materials.find(name);
+    return found == named_materials.end() ? kNone : found->second;
 }
 
 uint32_t BuildContext::material(uint32_t description_index, const std::vector<uint32_t>& path) {
@@ -68,11 +78,11 @@ uint32_t BuildContext::material(uint32_t description_index, const std::vector<ui
                                     material,
                                     reader,
                                     record,
-                                    place(material, material.name.empty() ? "Material" : "MakeNamedMaterial"),
+                                    {this, &material, material.name.empty() ? "Material" : "MakeNamedMaterial"},
                                     path};
             context.path.push_back(description_index);
             (*factory)(context);
-            reader.finish(fmt::format("material \"{}\"", material.type));
+            reader.finish("material");
         } else if (!refuse_unsupported(*this, material)) {
             const auto [message, hint] = material_registry().unknown(material.type);
             diagnostics.error(material.type_location.known() ? material.type_location : material.location, message,

@@ -39,16 +39,23 @@ void BuildContext::check_unused_media() {
         if (built_media.contains(i) || is_unsupported(medium)) continue;
         if (const PluginInfo* info = medium_registry().find_info(medium.type)) {
             for (const ParameterSpec& spec : info->parameters) medium.parameters.find(spec.name);
-            medium.parameters.report_unused(fmt::format("medium \"{}\"", medium.type), spec_names(info->parameters),
-                                            diagnostics);
+            if (!medium.parameters.all_used())
+                medium.parameters.report_unused(fmt::format("medium \"{}\"", medium.type), spec_names(info->parameters),
+                                                diagnostics);
         } else {
             report_unknown(*this, medium);
         }
     }
 }
 
+void BuildContext::choose_media() {
+    const std::string of_scene =
+        description.integrator.parameters.get_choice("media", "on", {"on", "off"}, diagnostics);
+    settings.media = options.media.value_or(of_scene == "on");
+}
+
 uint32_t BuildContext::medium(uint32_t description_index) {
-    if (description_index >= description.media.size()) return kernel::MEDIUM_VACUUM;
+    if (!settings.media || description_index >= description.media.size()) return kernel::MEDIUM_VACUUM;
     const auto built = built_media.find(description_index);
     if (built != built_media.end()) return built->second;
     MediumDescription& medium = description.media[description_index];
@@ -57,7 +64,7 @@ uint32_t BuildContext::medium(uint32_t description_index) {
         ParameterReader reader(medium_registry().find_info(medium.type)->parameters, medium, diagnostics);
         MediumContext context{*this, medium, reader, record};
         (*factory)(context);
-        reader.finish(fmt::format("medium \"{}\"", medium.type));
+        reader.finish("medium");
     } else if (is_unsupported(medium)) {
         diagnostics.unsupported(medium.type_location,
                                 fmt::format("participating medium \"{}\", a \"{}\",", medium.name, medium.type),
@@ -71,7 +78,7 @@ uint32_t BuildContext::medium(uint32_t description_index) {
         if (scene.media.size() < kernel::MEDIUM_COUNT) {
             index = uint32_t(scene.media.size());
             scene.media.push_back(record);
-            ask(kernel::EFFECT_MEDIUM, place(medium, "MakeNamedMedium"));
+            ask(kernel::EFFECT_MEDIUM, Asker{this, &medium, "MakeNamedMedium"});
         } else if (scene.media.size() == kernel::MEDIUM_COUNT) {
             diagnostics.error(medium.location, fmt::format("there are more than {} media", kernel::MEDIUM_COUNT - 1));
         }

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
+#include <optional>
 
 namespace lampyris {
 
@@ -122,13 +122,13 @@ class ShapeBuilder {
                              context_.material(shape.material),
                              area_light(shape, in_object),
                              in_object,
-                             context_.place(shape, "Shape")};
+                             {&context_, &shape, "Shape"}};
         const GeometrySet before{uint32_t(context_.scene.geometries.size()), 0};
         (*factory)(context);
         const Box box = set_bounds(context_.scene, {before.first_geometry, uint32_t(context_.scene.geometries.size()) -
                                                                                before.first_geometry});
         if (!box.empty() && box.too_far()) refuse_distance(context_.diagnostics, shape.location, "shape");
-        reader.finish(fmt::format("shape \"{}\"", shape.type));
+        reader.finish("shape");
     }
 
     void refuse(const ShapeDescription& shape) {
@@ -143,12 +143,8 @@ class ShapeBuilder {
 
     const AreaLight* area_light(const ShapeDescription& shape, bool in_object) {
         if (shape.area_light == kNone) return nullptr;
-        Entity& entity = context_.description.area_lights[shape.area_light];
-        AreaLight& light = area_lights_[shape.area_light];
-        if (!read_.contains(shape.area_light)) {
-            read_.insert(shape.area_light);
-            light = read_area_light(context_, entity);
-        }
+        std::optional<AreaLight>& light = area_lights_[shape.area_light];
+        if (!light) light = read_area_light(context_, context_.description.area_lights[shape.area_light]);
         const auto ignore = [&](const char* why) {
             context_.diagnostics.warning(shape.location, fmt::format("the area light is ignored: {}", why),
                                          "as in pbrt-v4");
@@ -157,13 +153,26 @@ class ShapeBuilder {
         if (in_object) return ignore("the shape is a part of an instanced object");
         if (context_.scene.materials[context_.material(shape.material)].data.x == kernel::MATERIAL_INTERFACE)
             return ignore("the shape's material is \"interface\"");
-        return light.valid ? &light : nullptr;
+        return light->valid ? &*light : nullptr;
     }
 
     BuildContext& context_;
-    std::vector<AreaLight> area_lights_;
-    std::set<uint32_t> read_;
+    std::vector<std::optional<AreaLight>> area_lights_;  // read when a shape first asks
 };
+
+}  // namespace
+
+namespace {
+
+void note_unused(BuildContext& context, const std::vector<uint32_t>& set_of_object) {
+    constexpr size_t kMostNamed = 10;
+    size_t unused = 0;
+    std::vector<std::string>& notes = context.scene.notes;
+    for (size_t i = 0; i < set_of_object.size(); ++i)
+        if (set_of_object[i] == kNone && ++unused <= kMostNamed)
+            notes.push_back(fmt::format("object \"{}\" is never instanced", context.description.objects[i].name));
+    if (unused > kMostNamed) notes.push_back(fmt::format("{} more objects are never instanced", unused - kMostNamed));
+}
 
 }  // namespace
 
@@ -178,14 +187,14 @@ void build_shapes(BuildContext& context) {
     scene.instances.push_back(world);
     scene.instance_sets.push_back(0);
 
-    std::map<uint32_t, uint32_t> set_of_object;
+    std::vector<uint32_t> set_of_object(description.objects.size(), kNone);
     std::vector<Box> object_boxes(description.objects.size());
     std::vector<Location> places{Location{}};  // of Scene::instances
     for (const InstanceDescription& instance : description.instances) {
         if (instance.object >= description.objects.size()) continue;
         ObjectDescription& object = description.objects[instance.object];
-        if (!set_of_object.contains(instance.object)) {
-            set_of_object.emplace(instance.object, uint32_t(scene.sets.size()));
+        if (set_of_object[instance.object] == kNone) {
+            set_of_object[instance.object] = uint32_t(scene.sets.size());
             scene.sets.push_back(builder.build(object.shapes, true));
             object_boxes[instance.object] = set_bounds(scene, scene.sets.back());
         }
@@ -208,9 +217,10 @@ void build_shapes(BuildContext& context) {
         scene.instances.push_back(record);
         scene.instance_sets.push_back(index);
         places.push_back(instance.location);
-        context.ask(
-            kernel::EFFECT_INSTANCES,
-            fmt::format("{} (ObjectInstance \"{}\")", description.sources->describe(instance.location), object.name));
+        context.ask(kernel::EFFECT_INSTANCES, [&] {
+            return fmt::format("{} (ObjectInstance \"{}\")", description.sources->describe(instance.location),
+                               object.name);
+        });
     }
     scene.record.bounds = bounding_sphere(scene);
     // Rays from anywhere in the scene, and from the camera, must be in range within each instance.
@@ -227,9 +237,7 @@ void build_shapes(BuildContext& context) {
             break;
         }
     }
-    for (uint32_t i = 0; i < description.objects.size(); ++i)
-        if (!set_of_object.contains(i))
-            scene.notes.push_back(fmt::format("object \"{}\" is never instanced", description.objects[i].name));
+    note_unused(context, set_of_object);
 }
 
 kernel::vec4 bounding_sphere(const Scene& scene) {

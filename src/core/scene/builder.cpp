@@ -8,9 +8,10 @@
 
 namespace lampyris {
 
-std::string BuildContext::place(const Entity& entity, const char* directive) const {
-    if (!entity.given()) return fmt::format("default ({} \"{}\")", directive, entity.type);
-    return fmt::format("{} ({} \"{}\")", description.sources->describe(entity.location), directive, entity.type);
+std::string Asker::operator()() const {
+    return fmt::format("{} ({} \"{}\")",
+                       entity->given() ? build->description.sources->describe(entity->location) : "default", directive,
+                       entity->type);
 }
 
 std::string BuildContext::resolve(const std::string& filename) const {
@@ -66,9 +67,10 @@ namespace {
 const std::string* texture_name(const Parameter& parameter, BuildContext& context) {
     const auto* names = std::get_if<std::vector<std::string>>(&parameter.values);
     if (names && names->size() == 1) {
-        context.ask(kernel::EFFECT_TEXTURES,
-                    fmt::format("{} (\"texture {}\")", context.description.sources->describe(parameter.location),
-                                parameter.name));
+        context.ask(kernel::EFFECT_TEXTURES, [&] {
+            return fmt::format("{} (\"texture {}\")", context.description.sources->describe(parameter.location),
+                               parameter.name);
+        });
         return &names->front();
     }
     context.diagnostics.error(parameter.location, fmt::format("\"{}\" must name one texture", parameter.name));

@@ -12,11 +12,22 @@
 #include <glm/vec3.hpp>
 
 #include <cstdint>
-#include <map>
 #include <string>
+#include <string_view>
+#include <unordered_map>
 #include <vector>
 
 namespace lampyris {
+
+struct BuildContext;
+
+// A directive that asks for effects. Its place is looked up where somebody wants to read it, not before.
+struct Asker {
+    const BuildContext* build = nullptr;
+    const Entity* entity = nullptr;
+    const char* directive = "";
+    std::string operator()() const;  // "scene.pbrt:12:1 (Material \"dielectric\")"
+};
 
 // An area light as its directive says it, ready to be given to a shape.
 struct AreaLight {
@@ -27,7 +38,7 @@ struct AreaLight {
     glm::vec3 texture_average{0.0f};  // radiance on average, for choosing lights
     float power = 0.0f;               // wanted, in the units of the scene; 0: none
     float power_luminance = 1.0f;     // luminance per unit of scale, as "power" counts it
-    std::string asked_by;
+    Asker asked_by;
 };
 
 // The whole of one build. Plugins append to `scene` and tell `diagnostics`.
@@ -51,21 +62,28 @@ struct BuildContext {
     // The record of SceneDescription::materials[i] (kNone: pbrt-v4's default, diffuse 0.5), built when first asked for.
     // `path` holds the materials that are being built, outermost first: a mix must not contain itself.
     uint32_t material(uint32_t description_index, const std::vector<uint32_t>& path = {});
-    std::map<uint32_t, uint32_t> built_materials;
-    std::map<uint32_t, uint32_t> mix_depths;  // of mixes in Scene::materials: how deeply they nest
+    std::unordered_map<uint32_t, uint32_t> built_materials;
+    // The index of a named material in the description, or kNone.
+    uint32_t named_material(const std::string& name);
+    std::unordered_map<std::string_view, uint32_t> named_materials;  // filled when first asked
+    std::unordered_map<uint32_t, uint32_t> mix_depths;  // of mixes in Scene::materials: how deeply they nest
     // Materials that nothing uses are not built; unknown types and parameters are told all the same.
     void check_unused_materials();
 
-    // "scene.pbrt:12:1 (Material \"dielectric\")"
-    std::string place(const Entity& entity, const char* directive) const;
-    void ask(uint32_t effect, const std::string& asked_by) { scene.effects.ask(effect, asked_by); }
+    // See Effects::ask.
+    template <typename AskedBy>
+    void ask(uint32_t effect, const AskedBy& asked_by) {
+        scene.effects.ask(effect, asked_by);
+    }
     // A file name in the scene, relative to the scene file's folder.
     std::string resolve(const std::string& filename) const;
     // Appends a transform and returns its index. Errors for a singular one are reported at `where`.
     uint32_t add_transform(const glm::mat4& to, Location where);
+    // Whether media are simulated, which the Integrator directive says. Call it first.
+    void choose_media();
     // The record of SceneDescription::media[i] (kNone: empty space), built when first asked for.
     uint32_t medium(uint32_t description_index);
-    std::map<uint32_t, uint32_t> built_media;
+    std::unordered_map<uint32_t, uint32_t> built_media;
     // As with materials.
     void check_unused_media();
     // Diagnostics::unsupported if the transform moves.
@@ -108,7 +126,7 @@ struct ShapeContext {
     uint32_t material = 0;  // into Scene::materials
     const AreaLight* area_light = nullptr;
     bool in_object = false;
-    std::string asked_by;
+    Asker asked_by;
 
     // Appends a geometry record with material, alpha, orientation and media filled in; the caller adds what its kind
     // needs (layout.h), and its lights (area_lights.h).
@@ -122,7 +140,7 @@ struct MaterialContext {
     MaterialDescription& material;
     ParameterReader& reader;
     kernel::MaterialRecord& record;
-    std::string asked_by;
+    Asker asked_by;
     std::vector<uint32_t> path;  // see BuildContext::material; ends with this one
     void ask(uint32_t effect) { build.ask(effect, asked_by); }
 };
@@ -144,7 +162,7 @@ struct LightContext {
     BuildContext& build;
     LightDescription& light;
     ParameterReader& reader;
-    std::string asked_by;
+    Asker asked_by;
     void ask(uint32_t effect) { build.ask(effect, asked_by); }
 };
 using LightFactory = void (*)(LightContext&);
@@ -156,7 +174,7 @@ struct CameraContext {
     ParameterReader& reader;
     kernel::CameraRecord& record;
     glm::vec2 resolution;
-    std::string asked_by;
+    Asker asked_by;
 };
 using CameraFactory = void (*)(CameraContext&);
 Registry<CameraFactory>& camera_registry();

@@ -76,6 +76,7 @@ class ParameterList {
     std::vector<int32_t> take_ints(std::string_view name, Diagnostics& diagnostics);
     // Adds those that are missing here (Attribute's defaults). They count as used: one may apply to some types only.
     void add_defaults(const std::vector<Parameter>& defaults);
+    bool all_used() const;
     // Every parameter that no getter asked for becomes an error, with the known names as hint.
     void report_unused(const std::string& of_what, const std::vector<std::string>& known,
                        Diagnostics& diagnostics) const;

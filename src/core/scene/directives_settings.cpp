@@ -15,7 +15,7 @@ void Parser::world_begin(const Token& directive) {
     // pbrt resets the transforms only: media and colour space stay.
     state_.ctm = {glm::dmat4(1.0), glm::dmat4(1.0)};
     state_.active_times = GraphicsState::kBothTimes;
-    coordinate_systems_["world"] = state_.ctm;
+    define_coordinate_system("world", state_.ctm);
     (void)directive;
 }
 
@@ -156,7 +156,7 @@ void Parser::camera(const Token& directive) {
         world_from_camera[i] = glm::inverse(state_.ctm[i]);
         scene_.camera.world_from_camera.matrix[i] = glm::mat4(world_from_camera[i]);
     }
-    coordinate_systems_["camera"] = world_from_camera;
+    define_coordinate_system("camera", world_from_camera);
     scene_.camera.medium = state_.exterior_medium;
 }
 
@@ -183,14 +183,22 @@ void Parser::import(const Token& directive) {
     if (!read_string(directive, "a file name", name, &location)) return;
     const GraphicsState saved = state_;
     const uint32_t object = object_;
-    const auto coordinate_systems = coordinate_systems_;
+    const size_t undo_from = undo_.size();
+    const bool outer_importing = std::exchange(importing_, true);
     const size_t outer_first_block = std::exchange(first_own_block_, blocks_.size());
     open_file(directive, name, location, path);
     report_open_blocks(first_own_block_);
     blocks_.resize(std::min(blocks_.size(), first_own_block_));
     first_own_block_ = outer_first_block;
     object_ = object;
-    coordinate_systems_ = coordinate_systems;
+    importing_ = outer_importing;
+    for (; undo_.size() > undo_from; undo_.pop_back()) {
+        auto& [changed, before] = undo_.back();
+        if (before)
+            coordinate_systems_[changed] = *before;
+        else
+            coordinate_systems_.erase(changed);
+    }
     state_ = saved;
 }
 

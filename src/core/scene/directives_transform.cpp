@@ -131,7 +131,13 @@ void Parser::concat_transform(const Token& directive) {
 
 void Parser::coordinate_system(const Token& directive) {
     std::string name;
-    if (read_string(directive, "a name", name)) coordinate_systems_[name] = state_.ctm;
+    if (read_string(directive, "a name", name)) define_coordinate_system(name, state_.ctm);
+}
+
+void Parser::define_coordinate_system(const std::string& name, const CoordinateSystem& matrices) {
+    const auto [place, is_new] = coordinate_systems_.try_emplace(name, matrices);
+    if (importing_) undo_.emplace_back(name, is_new ? std::nullopt : std::optional(place->second));
+    place->second = matrices;
 }
 
 void Parser::coord_sys_transform(const Token& directive) {
@@ -143,9 +149,13 @@ void Parser::coord_sys_transform(const Token& directive) {
         state_.ctm = known->second;  // at both times, whatever ActiveTransform says, as in pbrt
         return;
     }
-    std::vector<std::string> names;
-    for (const auto& [known_name, matrices] : coordinate_systems_) names.push_back(known_name);
-    diagnostics_->error(location, "no coordinate system is named \"" + shown(name) + "\"" + did_you_mean(name, names),
+    const auto names = [&] {
+        std::vector<std::string> all;
+        for (const auto& [known_name, matrices] : coordinate_systems_) all.push_back(known_name);
+        return all;
+    };
+    diagnostics_->error(location,
+                        "no coordinate system is named \"" + shown(name) + "\"" + diagnostics_->guess(name, names),
                         name == "camera" ? "\"camera\" is defined by the Camera directive" : "");
 }
 

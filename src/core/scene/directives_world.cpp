@@ -7,7 +7,12 @@ std::string Parser::name_of(Block kind) {
     return kind == Block::kObject ? "Object" : kind == Block::kAttribute ? "Attribute" : "Transform";
 }
 
-void Parser::begin_block(Block kind, const Token& directive) { blocks_.push_back({kind, directive.location, state_}); }
+void Parser::begin_block(Block kind, const Token& directive) {
+    OpenBlock block{kind, directive.location, state_, {}};
+    if (!blocks_.empty()) block.last_of_kind = blocks_.back().last_of_kind;
+    block.last_of_kind[size_t(kind)] = blocks_.size() + 1;
+    blocks_.push_back(std::move(block));
+}
 
 bool Parser::end_block(Block kind, const Token& directive) {
     if (blocks_.size() <= first_own_block_) {
@@ -20,9 +25,8 @@ bool Parser::end_block(Block kind, const Token& directive) {
                             std::string(directive.text) + " cannot close the block opened at " + place(open.location),
                             name_of(open.kind) + "End closes it");
         // Most likely one End is missing: if an outer block fits, close up to there.
-        size_t match = blocks_.size();
-        while (match > first_own_block_ && blocks_[match - 1].kind != kind) --match;
-        if (match == first_own_block_) return false;
+        const size_t match = open.last_of_kind[size_t(kind)];
+        if (match <= first_own_block_) return false;
         for (size_t i = match; i < blocks_.size(); ++i)
             if (blocks_[i].kind == Block::kObject) object_ = kNone;
         blocks_.resize(match);

@@ -79,6 +79,30 @@ std::shared_ptr<const FileText> FileText::open(const std::string& path, std::str
     }
     std::shared_ptr<FileText> file(new FileText);
     if (status.st_size == 0) return file;
+    // A process may map 65530 pieces (vm.max_map_count), and a scene may be made of more files than that.
+    constexpr off_t kSmall = 65536;
+    if (status.st_size <= kSmall) {
+        file->read_.resize(static_cast<size_t>(status.st_size));
+        size_t have = 0;
+        while (have < file->read_.size()) {
+            const ssize_t got = ::read(descriptor, file->read_.data() + have, file->read_.size() - have);
+            if (got < 0 && errno == EINTR) continue;
+            if (got < 0) {
+                why = std::strerror(errno);
+                return nullptr;
+            }
+            if (got == 0) break;  // it has become shorter
+            have += static_cast<size_t>(got);
+        }
+        file->read_.resize(have);
+        if (is_gzip(file->read_)) {
+            std::string inflated;
+            if (!inflate_gzip(file->read_, inflated, why)) return nullptr;
+            file->read_ = std::move(inflated);
+        }
+        file->text_ = file->read_;
+        return file;
+    }
     file->mapping_size_ = static_cast<size_t>(status.st_size);
     file->mapping_ = mmap(nullptr, file->mapping_size_, PROT_READ, MAP_PRIVATE, descriptor, 0);
     if (file->mapping_ == MAP_FAILED) {
@@ -89,10 +113,10 @@ std::shared_ptr<const FileText> FileText::open(const std::string& path, std::str
     madvise(file->mapping_, file->mapping_size_, MADV_SEQUENTIAL);
     file->text_ = {static_cast<const char*>(file->mapping_), file->mapping_size_};
     if (is_gzip(file->text_)) {
-        if (!inflate_gzip(file->text_, file->inflated_, why)) return nullptr;
+        if (!inflate_gzip(file->text_, file->read_, why)) return nullptr;
         munmap(file->mapping_, file->mapping_size_);
         file->mapping_ = nullptr;
-        file->text_ = file->inflated_;
+        file->text_ = file->read_;
     }
     return file;
 }

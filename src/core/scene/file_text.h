@@ -1,4 +1,4 @@
-// The bytes of an input file: memory-mapped, or decompressed into memory where the file is gzip'd.
+// The bytes of an input file: memory-mapped, or read into memory where the file is small, and decompressed where it is gzip'd.
 #pragma once
 
 #include <memory>
@@ -24,7 +24,7 @@ class FileText {
     FileText() = default;
     void* mapping_ = nullptr;
     size_t mapping_size_ = 0;
-    std::string inflated_;
+    std::string read_;  // of small or gzip'd files
     std::string_view text_;
 };
 

@@ -143,6 +143,10 @@ void ParameterList::add_defaults(const std::vector<Parameter>& defaults) {
     }
 }
 
+bool ParameterList::all_used() const {
+    return std::all_of(parameters.begin(), parameters.end(), [](const Parameter& parameter) { return parameter.used; });
+}
+
 void ParameterList::report_unused(const std::string& of_what, const std::vector<std::string>& known,
                                   Diagnostics& diagnostics) const {
     for (const Parameter& parameter : parameters) {

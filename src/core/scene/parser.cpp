@@ -233,9 +233,8 @@ uint32_t Parser::resolve(const NameTable& table, uint32_t id, const char* what) 
     const NameTable::Entry& entry = table[id];
     if (entry.index == kNone && !entry.reported) {
         entry.reported = true;
-        diagnostics_->error(entry.first_use,
-                            std::string("no ") + what + " is named \"" + shown(entry.name) + "\"" +
-                                (diagnostics_->full() ? "" : did_you_mean(entry.name, table.defined())));
+        diagnostics_->error(entry.first_use, std::string("no ") + what + " is named \"" + shown(entry.name) + "\"" +
+                                                 diagnostics_->guess(entry.name, [&] { return table.defined(); }));
     }
     return entry.index;
 }

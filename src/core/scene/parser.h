@@ -7,8 +7,10 @@
 #include "core/scene/parameter_parser.h"
 #include "core/scene/tokenizer.h"
 
+#include <optional>
 #include <span>
 #include <unordered_map>
+#include <utility>
 
 namespace lampyris {
 
@@ -95,6 +97,7 @@ class Parser {
         Block kind;
         Location location;
         GraphicsState saved;
+        std::array<size_t, 3> last_of_kind;  // of each kind the innermost, this one included: its index + 1; 0: none
     };
     static std::string name_of(Block kind);
     void begin_block(Block kind, const Token& directive);
@@ -121,7 +124,11 @@ class Parser {
     bool in_world_ = false;
     uint32_t object_ = kNone;  // being defined
     NameTable media_, materials_, objects_, float_textures_, spectrum_textures_;
-    std::unordered_map<std::string, std::array<glm::dmat4, 2>> coordinate_systems_;
+    using CoordinateSystem = std::array<glm::dmat4, 2>;
+    void define_coordinate_system(const std::string& name, const CoordinateSystem& matrices);
+    std::unordered_map<std::string, CoordinateSystem> coordinate_systems_;
+    bool importing_ = false;
+    std::vector<std::pair<std::string, std::optional<CoordinateSystem>>> undo_;  // what Imports have changed
     std::unordered_map<std::string, File> files_;  // by canonical path: each is mapped once
     std::vector<std::string> open_files_;          // canonical paths, outermost first
     size_t files_read_ = 0;

@@ -1,5 +1,6 @@
 #include "core/scene/texture_builder.h"
 
+#include "core/file.h"
 #include "core/scene/builder.h"
 
 #include <fmt/format.h>
@@ -56,7 +57,7 @@ void TextureBuilder::define(TextureDescription& description) {
                                 fmt::format("texture \"{}\" does not move", shown(description.name)),
                                 "the transform at the start of the shutter's interval holds");
         texture.program = (*factory)(context);
-        reader.finish(fmt::format("texture \"{}\"", description.type));
+        reader.finish("texture");
     } else if (description.type == "ptex") {
         diagnostics.unsupported(description.type_location, "texture \"ptex\"",
                                 "without it, the texture is a grey of 0.5");
@@ -86,15 +87,18 @@ TextureBuilder::Texture* TextureBuilder::find(const std::string& name, bool is_s
             fmt::format("it is defined at {}", context_.description.sources->describe(other->second.location)));
         return nullptr;
     }
-    std::vector<std::string> names;
-    for (const auto& [known, texture] : textures) names.push_back(known);
-    std::string hint = names.empty() ? fmt::format("no {} texture is defined before", wanted)
-                                     : fmt::format("the {} textures defined before are {}", wanted, list_of(names));
-    for (const TextureDescription& later : context_.description.textures)
-        if (later.name == name && later.is_spectrum == is_spectrum)
-            hint = fmt::format("it is defined only at {}", context_.description.sources->describe(later.location));
-    context_.diagnostics.error(
-        where, fmt::format("there is no {} texture \"{}\"{}", wanted, shown(name), did_you_mean(name, names)), hint);
+    std::string guess, hint;
+    if (!context_.diagnostics.full()) {
+        std::vector<std::string> names;
+        for (const auto& [known, texture] : textures) names.push_back(known);
+        guess = context_.diagnostics.guess(name, [&] { return names; });
+        hint = names.empty() ? fmt::format("no {} texture is defined before", wanted)
+                             : fmt::format("the {} textures defined before are {}", wanted, list_of(names));
+        for (const TextureDescription& later : context_.description.textures)
+            if (later.name == name && later.is_spectrum == is_spectrum)
+                hint = fmt::format("it is defined only at {}", context_.description.sources->describe(later.location));
+    }
+    context_.diagnostics.error(where, fmt::format("there is no {} texture \"{}\"{}", wanted, shown(name), guess), hint);
     return nullptr;
 }
 
@@ -130,14 +134,11 @@ uint32_t TextureBuilder::request_image(ImageRequest request) {
     std::error_code ignored;
     const std::filesystem::path path(request.path);
     if (!std::filesystem::is_regular_file(path, ignored)) {
-        std::vector<std::string> near;
-        if (std::filesystem::is_directory(path.parent_path(), ignored))
-            for (const auto& entry : std::filesystem::directory_iterator(path.parent_path(), ignored))
-                near.push_back(entry.path().filename().string());
-        std::sort(near.begin(), near.end());
-        context_.diagnostics.error(request.location, fmt::format("there is no image file {}{}", shown(request.path),
-                                                                 did_you_mean(path.filename().string(), near)));
-        failed_.push_back(request.path);
+        context_.diagnostics.error(
+            request.location,
+            fmt::format("there is no image file {}{}", shown(request.path),
+                        context_.diagnostics.guess(path.filename().string(), [&] { return files_beside(path); })));
+        failed_.insert(request.path);
     }
     requests_.push_back(std::move(request));
     return uint32_t(requests_.size() - 1);
@@ -145,17 +146,18 @@ uint32_t TextureBuilder::request_image(ImageRequest request) {
 
 uint32_t TextureBuilder::load(const ImageRequest& request) {
     // One file is reported once, however many use it.
-    if (std::find(failed_.begin(), failed_.end(), request.path) != failed_.end()) return kNone;
+    if (failed_.contains(request.path)) return kNone;
     try {
         return images().load(request.path, request.encoding, request.lookup, request.location);
     } catch (const InputError& error) {
         context_.diagnostics.error(request.location, reason(error));
-        failed_.push_back(request.path);
+        failed_.insert(request.path);
         return kNone;
     }
 }
 
-uint32_t TextureBuilder::emit(const TextureProgram& program, const std::string& asked_by) {
+uint32_t TextureBuilder::emit(const TextureProgram& program, Location where, const std::string& what) {
+    const auto asked_by = [&] { return fmt::format("{} ({})", context_.description.sources->describe(where), what); };
     std::vector<kernel::TextureOp> ops = program.ops;
     for (kernel::TextureOp& op : ops) {
         if (const uint32_t effects = effects_of(op)) context_.scene.effects.ask(effects, asked_by);
@@ -174,9 +176,7 @@ uint32_t TextureBuilder::named_program(const std::string& name, bool is_spectrum
     Texture* texture = find(name, is_spectrum, where);
     if (!texture) return kNone;
     if (texture->emitted == kNone)
-        texture->emitted =
-            emit(texture->program,
-                 fmt::format("{} (Texture \"{}\")", context_.description.sources->describe(texture->location), name));
+        texture->emitted = emit(texture->program, texture->location, fmt::format("Texture \"{}\"", name));
     return texture->emitted;
 }
 
@@ -198,7 +198,7 @@ uint32_t TextureBuilder::image_program(const std::string& filename, glm::vec3 sc
     op.data.z = request_image({context_.resolve(filename), {}, {kernel::WRAP_CLAMP, kernel::FILTER_BILINEAR}, where});
     TextureProgram program;
     program.ops.push_back(op);
-    found->second = emit(program, fmt::format("{} (image)", context_.description.sources->describe(where)));
+    found->second = emit(program, where, "image");
     return found->second;
 }
 

@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <unordered_set>
 #include <vector>
 
 namespace lampyris {
@@ -60,7 +61,8 @@ class TextureBuilder {
 
     void define(TextureDescription& description);
     Texture* find(const std::string& name, bool is_spectrum, Location where);
-    uint32_t emit(const TextureProgram& program, const std::string& asked_by);
+    // `where` and `what` ask for its effects.
+    uint32_t emit(const TextureProgram& program, Location where, const std::string& what);
     uint32_t named_program(const std::string& name, bool is_spectrum, Location where);
     uint32_t load(const ImageRequest& request);
     ImageStore& images();
@@ -68,8 +70,8 @@ class TextureBuilder {
     BuildContext& context_;
     std::unique_ptr<ImageStore> images_;
     std::vector<ImageRequest> requests_;
-    std::vector<std::string> failed_;  // images that were reported
-    Textures textures_[2];             // float, spectrum: names of one kind do not hide the other's
+    std::unordered_set<std::string> failed_;  // images that were reported
+    Textures textures_[2];                    // float, spectrum: names of one kind do not hide the other's
     std::map<std::string, uint32_t> image_programs_;
     bool defined_ = false;
 };

@@ -45,7 +45,7 @@ void build_entity(BuildContext& context, const Registry<Factory>& registry, Enti
     ParameterReader reader(registry.find_info(entity.type)->parameters, entity, context.diagnostics);
     call(*factory, reader);
     if (replaced) return;  // its own parameters were meant for the other
-    reader.finish(fmt::format("{} \"{}\"", registry.kind(), entity.type));
+    reader.finish(registry.kind());
 }
 
 void read_options(BuildContext& context) {
@@ -89,18 +89,22 @@ void build_view(BuildContext& context) {
                  });
     CameraDescription& camera = description.camera;
     context.scene.record.media = {context.medium(camera.medium), 0u, 0u, 0u};
-    const std::string asked_by = context.place(camera, "Camera");
     if (camera.world_from_camera.animated()) context.refuse_motion(camera.world_from_camera, camera.location);
     if (!invertible(camera.world_from_camera.matrix[0]))
         context.diagnostics.error(camera.location, "the camera's transform cannot be inverted",
                                   "a scale by 0, or numbers out of range?");
     const kernel::TransformRecord world = transform_record(camera.world_from_camera.matrix[0]);
     record.to0 = world.to0, record.to1 = world.to1, record.to2 = world.to2;
-    build_entity(
-        context, camera_registry(), camera, "perspective", [&](CameraFactory factory, ParameterReader& reader) {
-            CameraContext view{context, camera, reader, record, glm::vec2(record.film.x, record.film.y), asked_by};
-            factory(view);
-        });
+    build_entity(context, camera_registry(), camera, "perspective",
+                 [&](CameraFactory factory, ParameterReader& reader) {
+                     CameraContext view{context,
+                                        camera,
+                                        reader,
+                                        record,
+                                        glm::vec2(record.film.x, record.film.y),
+                                        {&context, &camera, "Camera"}};
+                     factory(view);
+                 });
     build_entity(context, sampler_registry(), description.sampler, "zsobol",
                  [&](SamplerFactory factory, ParameterReader& reader) {
                      SamplerContext sampler{context, reader};

@@ -43,19 +43,20 @@ void build(MaterialContext& context) {
     }
     for (int i = 0; i < 2; ++i) {
         const std::string& name = (*names)[size_t(i)];
-        const auto& all = build.description.materials;
-        const auto found = std::find_if(
-            all.begin(), all.end(), [&](const MaterialDescription& m) { return !m.name.empty() && m.name == name; });
-        if (found == all.end()) {
-            std::vector<std::string> known;
-            for (const MaterialDescription& m : all)
-                if (!m.name.empty()) known.push_back(m.name);
-            context.reader.error("materials",
-                                 fmt::format("there is no material named \"{}\"{}", name, did_you_mean(name, known)),
-                                 "MakeNamedMaterial defines one");
+        const uint32_t index = build.named_material(name);
+        if (index == kNone) {
+            const auto known = [&] {
+                std::vector<std::string> names;
+                for (const MaterialDescription& m : build.description.materials)
+                    if (!m.name.empty()) names.push_back(m.name);
+                return names;
+            };
+            context.reader.error(
+                "materials",
+                fmt::format("there is no material named \"{}\"{}", name, build.diagnostics.guess(name, known)),
+                "MakeNamedMaterial defines one");
             continue;
         }
-        const uint32_t index = uint32_t(found - all.begin());
         if (std::find(context.path.begin(), context.path.end(), index) != context.path.end()) {
             context.reader.error("materials", fmt::format("the mix contains itself, through \"{}\"", name));
             continue;

@@ -1,4 +1,5 @@
 // Shape "plymesh": a mesh from a PLY file.
+#include "core/file.h"
 #include "core/scene/ply.h"
 #include "core/scene/shapes/mesh.h"
 
@@ -23,12 +24,10 @@ void build(ShapeContext& context) {
     const std::string path = context.build.resolve(filename);
     std::error_code code;
     if (!std::filesystem::is_regular_file(path, code)) {
-        std::vector<std::string> near;
-        const auto folder = std::filesystem::path(path).parent_path();
-        for (const auto& entry : std::filesystem::directory_iterator(folder, code))
-            near.push_back(entry.path().filename().string());
-        reader.error("filename", fmt::format("there is no file {}{}", shown(path),
-                                             did_you_mean(std::filesystem::path(path).filename().string(), near)));
+        reader.error("filename",
+                     fmt::format("there is no file {}{}", shown(path),
+                                 context.build.diagnostics.guess(std::filesystem::path(path).filename().string(),
+                                                                 [&] { return files_beside(path); })));
         return;
     }
     PlyMesh ply;
