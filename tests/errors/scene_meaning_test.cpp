@@ -154,11 +154,56 @@ TEST(SceneMeaning, FilmsAndCameras) {
               std::string::npos);
     EXPECT_NE(errors("Film \"rgb\" \"float cropwindow\" [ 0.5 0.5 0 1 ]").find("not a part of the 1280x720 picture"),
               std::string::npos);
+    EXPECT_NE(
+        errors("Film \"rgb\" \"integer pixelbounds\" [ 1280 1290 0 4 ]").find("are not a part of the 1280x720 picture"),
+        std::string::npos);
+    EXPECT_NE(errors("Film \"rgb\" \"float pixelbounds\" [ 0 1 0 1 ]").find("\"pixelbounds\" is of type float"),
+              std::string::npos);
+    EXPECT_NE(errors("Camera \"perspective\" \"float shutterclose\" 0").find("the shutter closes when it opens"),
+              std::string::npos);
     EXPECT_NE(errors("Camera \"relistic\"").find("unknown camera \"relistic\""), std::string::npos);
     EXPECT_NE(errors("Camera \"realistic\"").find("camera \"realistic\" is not supported"), std::string::npos);
     EXPECT_NE(errors("Camera \"perspective\" \"float fov\" 180").find("must be above 0 to 179.9"), std::string::npos);
     EXPECT_NE(errors("Sampler \"random\"").find("unknown sampler \"random\""), std::string::npos);
     EXPECT_NE(errors("PixelFilter \"gausian\"").find("did you mean"), std::string::npos);
+}
+
+// Where pbrt-v4 goes on after an array of the wrong length, or what is out of order, so does Lampyris: the same as without, or as
+// put right, and a warning says so.
+TEST(SceneMeaning, FilmsAndCamerasThatPbrtMakesTheBestOf) {
+    struct Case {
+        std::string text, meant;
+        int column;
+        std::string warning;
+    };
+    const std::string film = "Film \"rgb\" \"integer xresolution\" 40 \"integer yresolution\" 20 ",
+                      perspective = "Camera \"perspective\" ", orthographic = "Camera \"orthographic\" ";
+    const Case cases[] = {
+        {perspective + "\"float screenwindow\" [ -0.5 0.5 ]", perspective, 45, "has 2 numbers, not 4"},
+        {orthographic + "\"float screenwindow\" [ 1 2 3 4 5 ]", orthographic, 46, "has 5 numbers, not 4"},
+        {film + "\"float cropwindow\" [ 0 0.5 ]", film, 83, "has 2 numbers, not 4"},
+        {film + "\"float cropwindow\" [ 0.5 0.25 1 0 ]", film + "\"integer pixelbounds\" [ 10 20 0 20 ]", 0, ""},
+        {film + "\"integer pixelbounds\" [ 1 2 3 ]", film, 86, "has 3 numbers, not 4"},
+        {film + "\"integer pixelbounds\" [ 20 10 0 20 ]", film + "\"float cropwindow\" [ 0.25 0.5 0 1 ]", 0, ""},
+        {film + "\"integer pixelbounds\" [ -2147483648 2147483647 5 20 ]", film + "\"float cropwindow\" [ 0 1 0.25 1 ]",
+         86, "reach out of the 40x20 picture"},
+        {film + "\"integer pixelbounds\" [ 0 1 0 1 ] \"float cropwindow\" [ 0.25 0.5 0 1 ]",
+         film + "\"float cropwindow\" [ 0.25 0.5 0 1 ]", 117, "the crop window counts"},
+        {perspective + "\"float shutteropen\" 0.75 \"float shutterclose\" 0.5",
+         perspective + "\"float shutteropen\" 0.5 \"float shutterclose\" 0.75", 68, "the two are swapped"},
+    };
+    for (const Case& c : cases) {
+        const BuiltText text = build_text(c.text + "\nWorldBegin\n"), meant = build_text(c.meant + "\nWorldBegin\n");
+        EXPECT_EQ(text.all_errors() + meant.all_errors(), "") << c.text;
+        EXPECT_TRUE(meant.warnings.empty()) << c.meant;
+        EXPECT_EQ(text.scene().hash, meant.scene().hash) << c.text;
+        EXPECT_EQ(text.built.settings.crop, meant.built.settings.crop) << c.text;
+        ASSERT_EQ(text.warnings.size(), c.warning.empty() ? 0u : 1u) << c.text;
+        if (c.warning.empty()) continue;
+        const std::string place = "test.pbrt:1:" + std::to_string(c.column) + ": warning: ";
+        EXPECT_TRUE(text.warnings[0].starts_with(place)) << text.warnings[0];
+        EXPECT_NE(text.warnings[0].find(c.warning), std::string::npos) << text.warnings[0];
+    }
 }
 
 }  // namespace

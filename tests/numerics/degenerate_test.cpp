@@ -174,7 +174,7 @@ const std::vector<Case>& cases() {
         {"a crop window of nothing", kSky, "must not be empty", Expect::kFinite, straight,
          "Film \"rgb\" \"float cropwindow\" [ 0.5 0.5 0 1 ]\n"},
         {"pixel bounds elsewhere", kSky, "are not a part of", Expect::kFinite, straight,
-         "Film \"rgb\" \"integer pixelbounds\" [ -2147483648 2147483647 0 8 ]\n"},
+         "Film \"rgb\" \"integer pixelbounds\" [ 2000000000 2147483647 0 8 ]\n"},
         // Lights
         {"an empty scene", "", "", Expect::kBlack},
         {"nothing but sky", kSky, "", Expect::kLit},

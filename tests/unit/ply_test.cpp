@@ -7,6 +7,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -208,6 +209,19 @@ TEST(Ply, RefusesNumbersThatAreNotFinite) {
     std::memcpy(bytes.data() + body + 12 + 4, &infinite, 4);
     EXPECT_NE(error_of(bytes).find("property \"y\" of vertex 1 is not a finite float"), std::string::npos)
         << error_of(bytes);
+}
+
+// What is wrong with them, the shape tells, and goes on without them.
+TEST(Ply, PassesNormalsOnThatAreNotFinite) {
+    std::string bytes = binary(false);
+    const PlyMesh good = read_ply_bytes("mesh.ply", bytes);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    std::memcpy(bytes.data() + bytes.find("end_header\n") + 11 + 13, &nan, sizeof nan);  // after x, y, z and red
+    const PlyMesh mesh = read_ply_bytes("mesh.ply", bytes);
+    EXPECT_EQ(mesh.positions, good.positions);
+    EXPECT_EQ(mesh.uvs, good.uvs);
+    EXPECT_TRUE(std::isnan(mesh.normals[0]));
+    EXPECT_EQ(mesh.normals[3], good.normals[3]);
 }
 
 TEST(Ply, ErrorsNameTheirPlace) {

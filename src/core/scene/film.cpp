@@ -3,8 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 namespace lampyris {
 
@@ -14,32 +17,53 @@ using Rectangle = std::array<int, 4>;  // x0 y0 x1 y1, half-open
 
 constexpr int kLargestSide = 1 << 15;
 
-bool read_rectangle(FilmContext& film, std::array<int, 2> size, Rectangle& crop) {
+// The four numbers x0 x1 y0 y1 of a parameter, each pair in order; nothing, and an error or a warning, where they are none.
+// pbrt-v4 goes on where their number is wrong, with what holds without them.
+template <typename T>
+std::optional<std::array<T, 4>> read_bounds(ParameterReader& reader, const char* name, const char* hint) {
+    const Parameter* parameter = reader.find(name);
+    if (!parameter) return {};
+    const auto* numbers = std::get_if<std::vector<T>>(&parameter->values);
+    if (!numbers) {
+        reader.error(name, fmt::format("\"{}\" is of type {}", name, type_name(parameter->type)), hint);
+        return {};
+    }
+    if (numbers->size() != 4) {
+        reader.warning(name,
+                       fmt::format("\"{}\" has {} numbers, not 4: it is ignored, as in pbrt-v4", name, numbers->size()),
+                       hint);
+        return {};
+    }
+    std::array<T, 4> bounds{(*numbers)[0], (*numbers)[1], (*numbers)[2], (*numbers)[3]};
+    if (bounds[0] > bounds[1]) std::swap(bounds[0], bounds[1]);
+    if (bounds[2] > bounds[3]) std::swap(bounds[2], bounds[3]);
+    return bounds;
+}
+
+// As in pbrt-v4 (film.cpp, FilmBaseParameters): what lies outside of the picture is cut off, and of the two parameters the
+// crop window counts.
+void read_rectangle(FilmContext& film, std::array<int, 2> size, Rectangle& crop) {
     ParameterReader& reader = film.reader;
-    const Parameter* bounds = reader.find("pixelbounds");
-    const Parameter* window = reader.find("cropwindow");
+    const auto bounds = read_bounds<int32_t>(reader, "pixelbounds", "x0 x1 y0 y1");
+    const auto window = read_bounds<float>(reader, "cropwindow", "x0 x1 y0 y1, each between 0 and 1");
     if (bounds) {
-        const auto* numbers = std::get_if<std::vector<int32_t>>(&bounds->values);
-        if (!numbers || numbers->size() != 4) {
-            reader.error("pixelbounds", "\"pixelbounds\" must be four integers", "x0 x1 y0 y1");
-            return false;
-        }
-        crop = {(*numbers)[0], (*numbers)[2], (*numbers)[1], (*numbers)[3]};
-        if (window) reader.error("cropwindow", "both \"cropwindow\" and \"pixelbounds\" are given", "one of them");
-    } else if (window) {
-        const auto* numbers = std::get_if<std::vector<float>>(&window->values);
-        if (!numbers || numbers->size() != 4) {
-            reader.error("cropwindow", "\"cropwindow\" must be four numbers", "x0 x1 y0 y1, each between 0 and 1");
-            return false;
-        }
-        // pbrt-v4 rounds both ends up (film.cpp, FilmBaseParameters).
+        crop = {std::max((*bounds)[0], 0), std::max((*bounds)[2], 0), std::min((*bounds)[1], size[0]),
+                std::min((*bounds)[3], size[1])};
+        if (crop != Rectangle{(*bounds)[0], (*bounds)[2], (*bounds)[1], (*bounds)[3]} && crop[0] < crop[2] &&
+            crop[1] < crop[3])
+            reader.warning("pixelbounds", fmt::format("\"pixelbounds\" reach out of the {}x{} picture and are cut off",
+                                                      size[0], size[1]));
+    }
+    if (window) {
+        if (bounds)
+            reader.warning("cropwindow", "both \"cropwindow\" and \"pixelbounds\" are given: the crop window counts");
+        // Both ends are rounded up.
         const auto pixel = [](float share, int side) {
             return int(std::ceil(float(side) * std::fmin(std::fmax(share, 0.0f), 1.0f)));
         };
-        crop = {pixel((*numbers)[0], size[0]), pixel((*numbers)[2], size[1]), pixel((*numbers)[1], size[0]),
-                pixel((*numbers)[3], size[1])};
+        crop = {pixel((*window)[0], size[0]), pixel((*window)[2], size[1]), pixel((*window)[1], size[0]),
+                pixel((*window)[3], size[1])};
     }
-    return true;
 }
 
 void build_film(FilmContext& film) {
@@ -47,8 +71,8 @@ void build_film(FilmContext& film) {
     BuildContext& build = film.build;
     std::array<int, 2> size{reader.get_int("xresolution"), reader.get_int("yresolution")};
     Rectangle crop{0, 0, size[0], size[1]};
-    bool good = read_rectangle(film, size, crop);
-    Location where = reader.location(reader.has("pixelbounds") ? "pixelbounds" : "cropwindow");
+    read_rectangle(film, size, crop);
+    const Location where = reader.location(reader.has("cropwindow") ? "cropwindow" : "pixelbounds");
     if (build.options.resolution) {
         // The crop window keeps its place in the picture.
         const auto moved = [&](int at, int axis) {
@@ -58,8 +82,8 @@ void build_film(FilmContext& film) {
         size = *build.options.resolution;
     }
     if (build.options.crop) crop = *build.options.crop;
-    if (good && (crop[0] < 0 || crop[1] < 0 || crop[2] > size[0] || crop[3] > size[1] || crop[0] >= crop[2] ||
-                 crop[1] >= crop[3])) {
+    if (crop[0] < 0 || crop[1] < 0 || crop[2] > size[0] || crop[3] > size[1] || crop[0] >= crop[2] ||
+        crop[1] >= crop[3]) {
         const std::string message = fmt::format("the pixels {},{} to {},{} are not a part of the {}x{} picture",
                                                 crop[0], crop[1], crop[2], crop[3], size[0], size[1]);
         if (build.options.crop) throw InputError("error: --crop: " + message);
@@ -77,7 +101,7 @@ void build_film(FilmContext& film) {
     Diagnostics quiet(*build.description.sources);  // the camera's own factory tells what is wrong with these
     const float open = camera.parameters.get_float("shutteropen", 0.0f, quiet),
                 close = camera.parameters.get_float("shutterclose", 1.0f, quiet);
-    const float exposure = reader.has("exposuretime") ? reader.get_float("exposuretime") : close - open;
+    const float exposure = reader.has("exposuretime") ? reader.get_float("exposuretime") : std::abs(close - open);
     film.record.lens.w = exposure > 0.0f ? exposure * reader.get_float("iso") / 100.0f : 1.0f;
     const float largest = reader.get_float("maxcomponentvalue");
     film.record.lens.z = std::isfinite(largest) && largest < 3e38f ? largest : 0.0f;

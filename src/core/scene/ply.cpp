@@ -86,16 +86,13 @@ class PlyReader : PlyBody {
             read_packed_vertices(element, attributes);
         else
             read_mixed_vertices(element, attributes);
-        for (const Attribute& attribute : attributes) {
-            const auto& values = *attribute.values;
-            const auto bad = std::find_if(values.begin(), values.end(), [](float v) { return !std::isfinite(v); });
-            if (bad == values.end()) continue;
-            const auto vertex = static_cast<size_t>(bad - values.begin()) / attribute.components;
-            const std::string& property =
-                element.properties[attribute.property[static_cast<size_t>(bad - values.begin()) % attribute.components]]
-                    .name;
-            fail(start, "property \"" + property + "\" of vertex " + std::to_string(vertex) + " is not a finite float");
-        }
+        // Of normals and texture coordinates that are not finite the shape makes the best (shapes/mesh.cpp).
+        const std::vector<float>& values = mesh_.positions;
+        const auto bad = std::find_if(values.begin(), values.end(), [](float v) { return !std::isfinite(v); });
+        if (bad == values.end()) return;
+        const auto index = static_cast<size_t>(bad - values.begin());
+        fail(start, "property \"" + element.properties[attributes[0].property[index % 3]].name + "\" of vertex " +
+                        std::to_string(index / 3) + " is not a finite float");
     }
 
     // Rows of a fixed size: each attribute by itself, in whole floats where they lie side by side.

@@ -22,7 +22,7 @@ struct PlyMesh {
 };
 
 // Throws InputError, with a place in the file, where the file cannot be read or does not hold what its header says. Every
-// index of the result is that of a vertex, and every number is finite.
+// index of the result is that of a vertex, and every position is finite; normals and texture coordinates need not be.
 PlyMesh read_ply(const std::string& path);
 // The same for a file's bytes in memory; `name` stands in messages.
 PlyMesh read_ply_bytes(const std::string& name, std::string_view bytes);

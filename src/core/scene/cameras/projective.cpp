@@ -1,6 +1,7 @@
 // Cameras "perspective" and "orthographic", both with a thin lens.
 #include "core/scene/builder.h"
 
+#include <fmt/format.h>
 #include <glm/glm.hpp>
 
 #include <algorithm>
@@ -21,8 +22,14 @@ std::array<float, 4> screen_window(CameraContext& camera) {
                                                 : std::array{-1.0f, 1.0f, -1.0f / aspect, 1.0f / aspect};
     if (const Parameter* given = camera.reader.find("screenwindow")) {
         const auto* numbers = std::get_if<std::vector<float>>(&given->values);
-        if (!numbers || numbers->size() != 4 || (*numbers)[0] == (*numbers)[1] || (*numbers)[2] == (*numbers)[3] ||
-            !std::all_of(numbers->begin(), numbers->end(), [](float x) { return std::isfinite(x); })) {
+        if (numbers && numbers->size() != 4) {
+            camera.reader.warning(
+                "screenwindow",
+                fmt::format("\"screenwindow\" has {} numbers, not 4: its default holds, as in pbrt-v4",
+                            numbers->size()),
+                "xmin xmax ymin ymax");
+        } else if (!numbers || (*numbers)[0] == (*numbers)[1] || (*numbers)[2] == (*numbers)[3] ||
+                   !std::all_of(numbers->begin(), numbers->end(), [](float x) { return std::isfinite(x); })) {
             camera.reader.error("screenwindow", "\"screenwindow\" must be four numbers",
                                 "xmin xmax ymin ymax, not equal");
         } else {
@@ -42,7 +49,9 @@ void build_projection(CameraContext& camera, uint32_t kind, float scale) {
     record.lens.y = camera.reader.get_float("focaldistance");
     if (record.lens.x > 0.0f) camera.build.ask(kernel::EFFECT_DEPTH_OF_FIELD, camera.asked_by);
     const float open = camera.reader.get_float("shutteropen"), close = camera.reader.get_float("shutterclose");
-    if (!(open < close)) camera.reader.error("shutterclose", "the shutter closes before it opens");
+    if (open > close)
+        camera.reader.warning("shutterclose", "the shutter closes before it opens: the two are swapped, as in pbrt-v4");
+    if (open == close) camera.reader.error("shutterclose", "the shutter closes when it opens");
 }
 
 void build_perspective(CameraContext& camera) {

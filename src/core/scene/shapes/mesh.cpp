@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <glm/glm.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace lampyris {
@@ -127,20 +128,78 @@ bool check_mesh(ShapeContext& context, const Mesh& mesh) {
         context.build.scene.positions.size() / 3 + vertices >= (size_t(1) << 32) / 3)
         return fail("P", fmt::format("the mesh of {} vertices does not fit beside the others", vertices),
                     "kernels count to 2^32 coordinates");
-    for (const std::vector<float>* values : {&mesh.positions, &mesh.normals, &mesh.uvs})
-        for (const float value : *values)
-            if (!std::isfinite(value))
-                return fail(values == &mesh.positions ? "P"
-                            : values == &mesh.normals ? "N"
-                                                      : "uv",
-                            "a coordinate of the mesh is not finite", "");
+    for (const float value : mesh.positions)
+        if (!std::isfinite(value)) return fail("P", "a coordinate of the mesh is not finite", "");
     return true;
 }
 
-void add_mesh(ShapeContext& context, Mesh&& mesh) {
+namespace {
+
+// What of a vertex cannot be used.
+enum Unusable : uint8_t { kNormal = 1, kUv = 2 };
+
+// For each vertex, of `components` values: whether one of them is not finite. True where that is so of any.
+bool mark_unusable(const std::vector<float>& values, size_t components, Unusable mark, std::vector<uint8_t>& marks) {
+    bool any = false;
+    for (size_t i = 0; i < values.size(); ++i) {
+        if (std::isfinite(values[i])) continue;
+        marks[i / components] |= mark;
+        any = true;
+    }
+    return any;
+}
+
+uint8_t marks_of_face(const Mesh& mesh, const std::vector<uint8_t>& marks, size_t face) {
+    uint8_t all = 0;
+    for (uint32_t c = 0; c < mesh.corners; ++c) all |= marks[mesh.indices[face * mesh.corners + c]];
+    return all;
+}
+
+void warn_of_unusable(ShapeContext& context, const Mesh& mesh, const std::vector<uint8_t>& marks, Unusable mark) {
+    const size_t faces = mesh.indices.size() / mesh.corners;
+    const auto vertices = std::count_if(marks.begin(), marks.end(), [&](uint8_t m) { return (m & mark) != 0; });
+    const auto first =
+        std::find_if(marks.begin(), marks.end(), [&](uint8_t m) { return (m & mark) != 0; }) - marks.begin();
+    size_t affected = 0;
+    for (size_t face = 0; face < faces; ++face) affected += (marks_of_face(mesh, marks, face) & mark) != 0;
+    if (affected == 0) return;
+    const char* name = mark == kNormal ? "N" : "uv";
+    context.build.diagnostics.warning(
+        context.reader.location(context.reader.has(name) ? name : "filename"),
+        fmt::format("{} of the mesh's {} {} are not finite, the first is that of vertex {}: {} of its {} {} {}",
+                    vertices, marks.size(), mark == kNormal ? "normals" : "texture coordinates", first, affected, faces,
+                    mesh.corners == 3 ? "triangles" : "patches",
+                    mark == kNormal ? "are shaded flat" : "have those of a mesh that gives none"));
+}
+
+// The faces with these marks, as a mesh of their own without what cannot be used.
+Mesh faces_with(const Mesh& mesh, const std::vector<uint8_t>& marks, uint8_t wanted) {
+    constexpr uint32_t kUnset = 0xffffffffu;
+    Mesh part;
+    part.corners = mesh.corners;
+    std::vector<uint32_t> new_index(marks.size(), kUnset);
+    const auto copy = [](std::vector<float>& to, const std::vector<float>& from, size_t components, uint32_t i) {
+        const auto first = from.begin() + ptrdiff_t(components * i);
+        to.insert(to.end(), first, first + ptrdiff_t(components));
+    };
+    for (size_t face = 0; face < mesh.indices.size() / mesh.corners; ++face) {
+        if (marks_of_face(mesh, marks, face) != wanted) continue;
+        for (uint32_t c = 0; c < mesh.corners; ++c) {
+            const uint32_t i = mesh.indices[face * mesh.corners + c];
+            if (new_index[i] == kUnset) {
+                new_index[i] = uint32_t(part.positions.size() / 3);
+                copy(part.positions, mesh.positions, 3, i);
+                if (!mesh.normals.empty() && (wanted & kNormal) == 0) copy(part.normals, mesh.normals, 3, i);
+                if (!mesh.uvs.empty() && (wanted & kUv) == 0) copy(part.uvs, mesh.uvs, 2, i);
+            }
+            part.indices.push_back(new_index[i]);
+        }
+    }
+    return part;
+}
+
+void add_usable(ShapeContext& context, Mesh&& mesh) {
     Scene& scene = context.build.scene;
-    const ShapeDescription& shape = context.shape;
-    transform_mesh(mesh, shape.world_from_object.matrix[0], shape.reverse_orientation);
     uint32_t flags = 0;
     if (!mesh.normals.empty()) {
         flags |= kernel::GEOMETRY_HAS_NORMALS;
@@ -160,6 +219,24 @@ void add_mesh(ShapeContext& context, Mesh&& mesh) {
     append(scene.positions, std::move(mesh.positions));
     append(scene.normals, std::move(mesh.normals));
     append(scene.uvs, std::move(mesh.uvs));
+}
+
+}  // namespace
+
+// A face with a vertex whose normal is not finite is shaded flat, as pbrt-v4 does where it is NaN; where a texture coordinate
+// is not finite, the face has those of a mesh without. Other faces keep theirs.
+void add_mesh(ShapeContext& context, Mesh&& mesh) {
+    const ShapeDescription& shape = context.shape;
+    transform_mesh(mesh, shape.world_from_object.matrix[0], shape.reverse_orientation);
+    std::vector<uint8_t> marks(mesh.positions.size() / 3);
+    const bool bad_normals = mark_unusable(mesh.normals, 3, kNormal, marks),
+               bad_uvs = mark_unusable(mesh.uvs, 2, kUv, marks);
+    if (!bad_normals && !bad_uvs) return add_usable(context, std::move(mesh));
+    if (bad_normals) warn_of_unusable(context, mesh, marks, kNormal);
+    if (bad_uvs) warn_of_unusable(context, mesh, marks, kUv);
+    for (const int wanted : {0, int(kNormal), int(kUv), kNormal | kUv})
+        if (Mesh part = faces_with(mesh, marks, uint8_t(wanted)); !part.indices.empty())
+            add_usable(context, std::move(part));
 }
 
 }  // namespace lampyris
