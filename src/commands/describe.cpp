@@ -1,6 +1,7 @@
 // lampyris describe SCENE: what the scene calls for, who asks for it, and what it costs.
 #include "commands/command.h"
 #include "core/error.h"
+#include "core/pbrt_integrators.h"
 #include "core/scene/load.h"
 
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <memory>
 #include <string>
+#include <utility>
 
 namespace lampyris {
 namespace {
@@ -70,7 +72,9 @@ void print_table(const LoadedScene& loaded) {
     if (crop != std::array<int, 4>{0, 0, int(scene.width()), int(scene.height())})
         fmt::print(", of which {},{} to {},{}", crop[0], crop[1], crop[2], crop[3]);
     fmt::print(", {} samples a pixel ({})\n", loaded.settings.samples_per_pixel, loaded.settings.sampler);
-    fmt::print("integrator   {}\n", loaded.settings.integrator.type);
+    const std::string& asked = loaded.settings.integrator.type;
+    const std::string renders = rendering_integrator(asked);
+    fmt::print("integrator   {}{}\n", asked, renders == asked ? "" : fmt::format(" (rendered by {})", renders));
     fmt::print("shapes       {} triangles, {} patches, {} quadrics in {} geometries; {} instances", counts.triangles,
                counts.patches, counts.quadrics, scene.geometries.size(), scene.instances.size() - 1);
     if (scene.instances.size() > 1) fmt::print(" ({} triangles in all)", counts.triangles_with_instances);
@@ -110,6 +114,7 @@ void print_json(const LoadedScene& loaded) {
     json["samples_per_pixel"] = loaded.settings.samples_per_pixel;
     json["sampler"] = loaded.settings.sampler;
     json["integrator"] = loaded.settings.integrator.type;
+    json["rendered_by"] = rendering_integrator(loaded.settings.integrator.type);
     json["triangles"] = counts.triangles;
     json["triangles_with_instances"] = counts.triangles_with_instances;
     json["patches"] = counts.patches;
@@ -141,7 +146,9 @@ void print_json(const LoadedScene& loaded) {
 }
 
 int describe(const DescribeOptions& options) {
-    const LoadedScene loaded = load_scene(options.scene, {}, options.skip_unsupported);
+    LoadedScene loaded = load_scene(options.scene, {}, options.skip_unsupported);
+    for (std::string& note : integrator_notes(loaded.settings.integrator, loaded.scene, *loaded.sources))
+        loaded.scene.notes.push_back(std::move(note));
     for (const std::string& warning : loaded.warnings) fmt::print(stderr, "{}\n", warning);
     if (options.json)
         print_json(loaded);

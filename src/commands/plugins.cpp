@@ -1,6 +1,7 @@
 // lampyris plugins [KIND [NAME]]: what is registered, and the parameters that it takes.
 #include "commands/command.h"
 #include "core/error.h"
+#include "core/pbrt_integrators.h"
 #include "core/plugin.h"
 #include "core/registry.h"
 
@@ -109,6 +110,28 @@ void print_markdown(const std::vector<const RegistryBase*>& kinds) {
     }
 }
 
+// What reads a scene's Integrator directive, as a page.
+void print_pbrt_integrators() {
+    fmt::print(
+        "\n## Integrators of pbrt-v4\n\nWhat renders where a scene names one of them. The parameters of pbrt-v4 are "
+        "known words; "
+        "those that have no effect are told\nin a note, unless they have pbrt-v4's default.\n\n"
+        "| pbrt-v4's | rendered by | difference | parameters taken over | of no effect, or (*) refused |\n"
+        "|---|---|---|---|---|\n");
+    for (const PbrtIntegrator& known : pbrt_integrators()) {
+        std::string taken, other;
+        for (const PbrtParameter& p : known.parameters) {
+            if (p.ours.empty())
+                other += fmt::format("{}`{}`{}", other.empty() ? "" : ", ", p.name, p.refused ? " (*)" : "");
+            else
+                taken += fmt::format("{}`{}`{}", taken.empty() ? "" : ", ", p.name,
+                                     p.ours == p.name ? "" : fmt::format(" as `{}`", p.ours));
+        }
+        fmt::print("| `{}` | `{}` | {} | {} | {} |\n", known.name, rendering_integrator(std::string(known.name)),
+                   cell(std::string(known.difference)), taken, other);
+    }
+}
+
 std::vector<const RegistryBase*> wanted_kinds(const PluginsOptions& options) {
     std::vector<const RegistryBase*> all = registries();
     if (options.kind.empty()) return all;
@@ -140,6 +163,7 @@ int plugins(const PluginsOptions& options) {
         fmt::print("{}\n", json.dump(2));
     } else if (options.markdown) {
         print_markdown(kinds);
+        if (options.kind.empty()) print_pbrt_integrators();
     } else if (!options.name.empty()) {
         print_plugin(*kinds.front(), *kinds.front()->find_info(options.name));
     } else {

@@ -5,7 +5,7 @@
 #include "core/file.h"
 #include "core/image/image_io.h"
 #include "core/image/metrics.h"
-#include "core/integrator.h"
+#include "core/integrator_choice.h"
 #include "core/photon_map.h"
 #include "core/plugin.h"
 #include "core/scene/build.h"
@@ -14,7 +14,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -27,59 +26,10 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-struct ChosenIntegrator {
-    std::string name;
-    std::unique_ptr<Integrator> integrator;
-    const ParameterFields* fields = nullptr;
-    std::string photon_map = kDefaultPhotonMap;  // of integrators that use one
-};
-
-// Of pbrt-v4's integrators, those that have no namesake here.
-bool is_pbrts(std::string_view name) {
-    constexpr std::array<std::string_view, 9> kNames{"ambientocclusion", "bdpt",          "function",
-                                                     "lightpath",        "mlt",           "randomwalk",
-                                                     "simplepath",       "simplevolpath", "volpath"};
-    return std::find(kNames.begin(), kNames.end(), name) != kNames.end();
-}
-
-// The integrator of the command line, or the scene's; parameters of the scene first, then the command line's.
-ChosenIntegrator choose_integrator(const RenderOptions& options, SceneSettings& settings, Diagnostics& diagnostics) {
-    ChosenIntegrator chosen;
-    PluginChoice choice;
-    if (!options.integrator.empty()) choice = parse_plugin_choice(options.integrator);
-    chosen.name = choice.name.empty() ? settings.integrator.type : choice.name;
-    const bool from_scene = choice.name.empty();
-    if (from_scene && !integrators().find(chosen.name) && is_pbrts(chosen.name)) {
-        diagnostics.unsupported(settings.integrator.type_location, fmt::format("integrator \"{}\"", chosen.name),
-                                "\"path\" takes its place if skipped; --integrator NAME chooses another");
-        settings.integrator.parameters = {};
-        chosen.name = "path";
-    }
-    if (from_scene && !integrators().find(chosen.name)) {
-        const auto [message, hint] = integrators().unknown(chosen.name);
-        diagnostics.error(settings.integrator.type_location, message,
-                          hint + "; --integrator NAME renders the scene with another one");
-        return chosen;
-    }
-    const IntegratorFactory& factory = integrators().require(chosen.name);
-    chosen.integrator = factory.create();
-    chosen.fields = &factory.fields;
-    void* parameters = chosen.integrator->parameters();
-    set_defaults(parameters, factory.fields);
-    read_parameters(parameters, factory.fields, settings.integrator.parameters, diagnostics);
-    // An integrator that the command line chose takes what it knows of the scene's directive; the rest was meant for another.
-    if (from_scene) {
-        const ParameterList& list = settings.integrator.parameters;
-        std::vector<std::string> known = spec_names(specs_of(factory.fields));
-        if (chosen.integrator->uses_photon_map())
-            chosen.photon_map = list.get_string("photon_map", chosen.photon_map, diagnostics);
-        list.find("lightsampler");  // lights are chosen by power, whichever of pbrt's samplers is named
-        if (list.get_bool("regularize", false, diagnostics))
-            diagnostics.unsupported(list.find("regularize")->location, "path regularization");
-        known.insert(known.end(), {"lightsampler", "regularize"});
-        if (chosen.integrator->uses_photon_map()) known.emplace_back("photon_map");
-        list.report_unused(fmt::format("integrator \"{}\"", chosen.name), known, diagnostics);
-    }
+// What the command line says of the integrator, over what the scene says.
+ChosenIntegrator choose_integrator(const RenderOptions& options, BuiltScene& built, Diagnostics& diagnostics) {
+    ChosenIntegrator chosen = choose_integrator(built, options.integrator_choice, diagnostics);
+    if (!chosen.integrator) return chosen;
     if (!options.photon_map.empty()) {
         if (!chosen.integrator->uses_photon_map())
             throw InputError(fmt::format("error: --photon-map: integrator \"{}\" looks no photons up", chosen.name));
@@ -87,10 +37,6 @@ ChosenIntegrator choose_integrator(const RenderOptions& options, SceneSettings& 
     }
     if (chosen.integrator->uses_photon_map())
         create_photon_map(chosen.photon_map);  // says what is wrong with it, early
-    const std::string of_what = fmt::format("integrator \"{}\"", chosen.name);
-    for (const auto& [key, value] : choice.settings) set_parameter(parameters, factory.fields, key, value, of_what);
-    for (const auto& [key, value] : options.settings_of("integrator"))
-        set_parameter(parameters, factory.fields, key, value, of_what);
     return chosen;
 }
 
@@ -156,7 +102,7 @@ int render(const RenderOptions& options) {
     run.parse_s = seconds_since(program_start);
     const Clock::time_point scene_start = Clock::now();
     BuiltScene built = build_scene(std::move(description), options.build, diagnostics);
-    ChosenIntegrator chosen = choose_integrator(options, built.settings, diagnostics);
+    ChosenIntegrator chosen = choose_integrator(options, built, diagnostics);
     if (!options.quiet)
         for (const std::string& warning : diagnostics.warnings()) fmt::print(stderr, "{}\n", warning);
     if (!options.quiet && !diagnostics.has_errors())
@@ -227,7 +173,9 @@ int render(const RenderOptions& options) {
     }
     run.scene = options.scene;
     run.integrator = chosen.name;
+    run.integrator_asked = chosen.asked;
     run.integrator_parameters = show_parameters(chosen.integrator->parameters(), *chosen.fields);
+    if (!built.settings.media) run.integrator_parameters.emplace_back("media", "off");
     run.backend = device->backend();
     run.device = device->description();
     run.threads = device->threads();

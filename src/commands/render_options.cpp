@@ -117,6 +117,16 @@ void RenderOptions::finish() {
         sections_[section].emplace_back(setting.substr(dot + 1, equals - dot - 1), setting.substr(equals + 1));
     }
     for (const auto& [key, value] : settings_of("backend")) device.settings[key] = value;
+    if (!integrator.empty()) integrator_choice = parse_plugin_choice(integrator);
+    for (const auto& setting : settings_of("integrator")) integrator_choice.settings.push_back(setting);
+    // Of all integrators, and for the scene's builder.
+    for (const auto& [key, value] : integrator_choice.settings) {
+        if (key != "media") continue;
+        if (value != "on" && value != "off")
+            throw InputError(fmt::format("error: integrator.media={}: it is on or off", shown(value)));
+        build.media = value == "on";
+    }
+    std::erase_if(integrator_choice.settings, [](const auto& setting) { return setting.first == "media"; });
 }
 
 void add_render_options(CLI::App& command, RenderOptions& o) {

@@ -3,6 +3,7 @@
 
 #include "core/device.h"
 #include "core/image/image_io.h"
+#include "core/parameters.h"
 #include "core/render_session.h"
 #include "core/scene/build.h"
 
@@ -21,6 +22,7 @@ struct RenderOptions {
     std::string scene;
     std::vector<std::string> outputs;
     std::string integrator;               // NAME[:key=value,...]; empty: the scene's
+    PluginChoice integrator_choice;       // of it and of --set integrator.KEY=VALUE, by finish()
     std::string photon_map;               // the same
     std::optional<uint32_t> eye_samples;  // --spp, for integrators that tell it from --passes
     std::string backend = "cpu";

@@ -31,6 +31,7 @@ struct ConvergencePoint {
 struct RunRecord {
     std::string scene;
     std::string integrator;
+    std::string integrator_asked;  // what the scene or the command line names; empty: nobody names one
     std::vector<std::pair<std::string, std::string>> integrator_parameters;
     std::optional<std::string> photon_map;  // of integrators that use one, and
     PhotonStatistics photons;               // what it did

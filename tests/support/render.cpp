@@ -1,6 +1,7 @@
 #include "support/render.h"
 
 #include "core/image/image_io.h"
+#include "core/integrator_choice.h"
 
 #include <cmath>
 #include <filesystem>
@@ -13,16 +14,9 @@ Rendered render_description(SceneDescription description, const RenderSettings& 
     options.resolution = settings.resolution;
     options.crop = settings.crop;
     BuiltScene built = build_scene(std::move(description), options, diagnostics);
-    diagnostics.throw_if_errors();
     PluginChoice choice;
     if (!settings.integrator.empty()) choice = parse_plugin_choice(settings.integrator);
-    const std::string name = choice.name.empty() ? built.settings.integrator.type : choice.name;
-    const IntegratorFactory& factory = integrators().require(name);
-    const std::unique_ptr<Integrator> integrator = factory.create();
-    set_defaults(integrator->parameters(), factory.fields);
-    read_parameters(integrator->parameters(), factory.fields, built.settings.integrator.parameters, diagnostics);
-    for (const auto& [key, value] : choice.settings)
-        set_parameter(integrator->parameters(), factory.fields, key, value, name);
+    const ChosenIntegrator chosen = choose_integrator(built, choice, diagnostics);
     diagnostics.throw_if_errors();
 
     DeviceOptions device_options;
@@ -39,7 +33,7 @@ Rendered render_description(SceneDescription description, const RenderSettings& 
     session.on_progress = settings.on_progress;
     session.photon_map = settings.photon_map;
     session.start_at(settings.first_pass);
-    integrator->render(session);
+    chosen.integrator->render(session);
     film.download();
     Rendered result;
     result.image = film.image();
