@@ -252,7 +252,8 @@ struct FilmPixel {
     vec4 squares;  // sums of squares of the weighted radiance, for the variance; w: what the first hits' depth sums to
     vec4 albedo;   // sum over samples; w: number of samples that hit something
     vec4 normal;   // sum over samples
-    uvec4 counts;  // samples, rays, non-finite samples, pass of the first non-finite sample
+    uvec4
+        counts;  // samples, rays, samples left out (not finite, or beyond what the sums hold), pass of the first of those
 };
 
 // What an integrator knows of its bias: sums over samples, as FilmPixel's.
