@@ -179,6 +179,7 @@ CONST uint LIGHT_PROJECTION = 7u;
 CONST uint LIGHT_GONIOMETRIC = 8u;
 
 CONST uint LIGHT_TWO_SIDED = 1u;
+CONST uint LIGHT_PASSED = 2u;  // a light of constant alpha 0: it emits, and all rays pass it
 
 CONST uint CDF_TOTAL = 0x80000000u;  // where a CDF in `distributions` ends
 

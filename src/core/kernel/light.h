@@ -12,7 +12,7 @@ struct LightSample {
     vec3 radiance;   // arriving from there, if nothing is in between; delta lights: radiance / pdf is what counts
     float pdf;       // solid angle, times the probability of choosing the light; delta lights: the latter alone
     float distance;  // INFINITE_DISTANCE: the shadow ray leaves the scene
-    uint is_delta;   // 1: no ray finds this light by chance
+    uint is_delta;   // 1: no ray finds this light by chance; pdf may be a density all the same (LIGHT_PASSED)
     uint light;
 };
 
@@ -54,8 +54,10 @@ FN float light_pdf(IN(Surface) s, vec3 ref_p, vec3 wi) {
     return pdf * light.emission.w;
 }
 
-// The share of a masked light that is there: rays find it with this probability.
+// The share of a masked light that is there: rays find it with this probability. A light that all rays pass sends all of its
+// light, as pbrt's.
 FN float light_alpha(IN(LightRecord) light, vec3 position, vec3 ng, vec2 uv) {
+    if ((light.data.y & LIGHT_PASSED) != 0u) return 1.0f;
     TextureContext context;
     context.position = position;
     context.normal = ng;
@@ -93,7 +95,10 @@ FN bool sample_area_light(uint index, vec3 ref_p, vec2 u, INOUT(LightSample) s) 
     s.distance = shape.distance;
     s.pdf = shape.pdf * light.emission.w;
     s.radiance = area_emission(index, shape.position, shape.ng, shape.uv, -shape.wi);
-    if (HAS(EFFECT_ALPHA)) s.radiance = s.radiance * light_alpha(light, shape.position, shape.ng, shape.uv);
+    if (HAS(EFFECT_ALPHA)) {
+        s.radiance = s.radiance * light_alpha(light, shape.position, shape.ng, shape.uv);
+        s.is_delta = (light.data.y & LIGHT_PASSED) != 0u ? 1u : 0u;
+    }
     return !is_black(s.radiance);
 }
 

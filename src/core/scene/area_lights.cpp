@@ -119,6 +119,8 @@ void add_area_light(ShapeContext& context, kernel::LightRecord record, uint32_t 
         radiance = emitted > 0.0f ? radiance * (light.power / emitted) : glm::vec3(0.0f);
     }
     record.data.y = light.two_sided ? kernel::LIGHT_TWO_SIDED : 0u;
+    const kernel::GeometryRecord& shape = context.build.scene.geometries[geometry];
+    if (shape.ids.z == kernel::NONE && shape.alpha.x == 0.0f) record.data.y |= kernel::LIGHT_PASSED;
     record.data.z = light.texture;
     record.data.w = kernel::NONE;
     record.ids = {geometry, primitive, 0u, 0u};
