@@ -67,11 +67,17 @@ void print_summary(const RunRecord& run, const std::vector<std::string>& outputs
         fmt::print("the error estimate is unstable, the true error may be much larger: {}\n", run.progress.unstable);
     if (run.film.non_finite > 0)
         fmt::print(stderr,
-                   "warning: {} samples were not finite and are left out; the first one is sample {} of pixel ({}, "
-                   "{}): look at it with --replay {},{},{}\n",
+                   "warning: {} samples were not finite, or too large to be added to the others, and are left out; the "
+                   "first one is sample {} of pixel ({}, {}): look at it with --replay {},{},{}\n",
                    run.film.non_finite, run.film.first_non_finite[2], run.film.first_non_finite[0],
                    run.film.first_non_finite[1], run.film.first_non_finite[0], run.film.first_non_finite[1],
                    run.film.first_non_finite[2]);
+    if (run.film.unknown_errors > 0)
+        fmt::print(
+            stderr,
+            "warning: the error of {} pixels is not known, since squares of their radiance are beyond the range of a "
+            "float: scale the lights down, and the exposure up\n",
+            run.film.unknown_errors);
     for (const std::string& output : outputs) fmt::print("wrote {}\n", output);
 }
 

@@ -41,11 +41,18 @@ std::array<Estimate, 3> estimates(const kernel::FilmPixel& p) {
 double share_of_largest(std::vector<float> terms) {
     double sum = 0.0, largest = 0.0;
     for (const float term : terms) sum += double(term);
-    if (!(sum > 0.0)) return 0.0;
+    if (!(sum > 0.0) || !std::isfinite(sum)) return 0.0;
     const size_t count = (terms.size() + 999) / 1000;
     std::nth_element(terms.begin(), terms.begin() + ptrdiff_t(count - 1), terms.end(), std::greater<>());
     for (size_t i = 0; i < count; ++i) largest += double(terms[i]);
     return largest / sum;
+}
+
+constexpr double kLargestFloat = std::numeric_limits<float>::max();
+
+// As a number of an image, which is finite: NaN, an error that is not known yet, is 0.
+float of_image(double value) {
+    return std::isnan(value) ? 0.0f : float(std::clamp(value, -kLargestFloat, kLargestFloat));
 }
 
 // |z| that a standard normal variable stays below with the given probability: by bisection on erf.
@@ -105,22 +112,32 @@ FilmSummary Film::summary() const {
         result.non_finite += p.counts.z;
         const std::array<Estimate, 3> radiance = estimates(p);
         double of_pixel = 0.0;
-        for (const Estimate& e : radiance) of_pixel += e.variance / (e.mean * e.mean + 0.01);
+        bool unknown = false;
+        for (const Estimate& e : radiance) {
+            of_pixel += e.variance / (e.mean * e.mean + 0.01);
+            unknown = unknown || e.variance > kLargestFloat;
+        }
         error += of_pixel;
-        errors[i] = float(of_pixel);
+        errors[i] = of_image(of_pixel);
         const bool sees_surface = p.albedo.x > 0.0f || p.albedo.y > 0.0f || p.albedo.z > 0.0f;
         const bool has_light = p.squares.x > 0.0f || p.squares.y > 0.0f || p.squares.z > 0.0f;
         lit += sees_surface && has_light;
         dark += sees_surface && !has_light;
-        if (!bias_buffer_) continue;
+        if (!bias_buffer_) {
+            result.unknown_errors += unknown;
+            continue;
+        }
         const std::array<Estimate, 3> bias = bias_estimates(i);
+        for (const Estimate& e : bias) unknown = unknown || !std::isfinite(e.mean) || e.variance > kLargestFloat;
+        result.unknown_errors += unknown;
         // The square of a noisy estimate is too large by its variance; what is left may be negative here and there.
         for (size_t c = 0; c < 3; ++c)
             bias_squared +=
                 (bias[c].mean * bias[c].mean - bias[c].variance) / (radiance[c].mean * radiance[c].mean + 0.01);
     }
     if (bias_squared > 0.0) error += bias_squared;
-    result.estimated_relmse = error / (3.0 * double(pixels_.size()));
+    result.estimated_relmse =
+        result.unknown_errors > 0 ? std::numeric_limits<double>::quiet_NaN() : error / (3.0 * double(pixels_.size()));
     result.health.min_samples = result.min_samples;
     result.health.dark_share = lit + dark > 0 ? double(dark) / double(lit + dark) : 0.0;
     result.health.largest_share = share_of_largest(std::move(errors));
@@ -167,19 +184,16 @@ Image Film::image() const {
         const float length = glm::length(n);
         for (int c = 0; c < 3; ++c) *out++ = length > 0.0f ? n[c] / length : 0.0f;
         *out++ = p.squares.w * to_hits;
-        for (int c = 0; c < 3; ++c) {
-            const double variance = e[size_t(c)].variance;
-            *out++ = std::isnan(variance) ? 0.0f : float(variance);
-        }
+        for (int c = 0; c < 3; ++c) *out++ = of_image(e[size_t(c)].variance);
         *out++ = float(p.counts.x);
         if (!bias_buffer_) continue;
         const std::array<Estimate, 3> bias = bias_estimates(i);
-        for (size_t c = 0; c < 3; ++c) *out++ = float(bias[c].mean);
+        for (size_t c = 0; c < 3; ++c) *out++ = of_image(bias[c].mean);
         for (size_t c = 0; c < 3; ++c) {
             // The true error differs from the estimated bias by the noise of both.
             const double variance = e[c].variance + bias[c].variance;
             const double noise = std::isnan(variance) ? 0.0 : std::sqrt(variance);
-            *out++ = float(std::abs(bias[c].mean) + z * noise);
+            *out++ = of_image(std::abs(bias[c].mean) + z * noise);
         }
     }
     return image;

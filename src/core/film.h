@@ -15,11 +15,13 @@ namespace lampyris {
 
 struct FilmSummary {
     uint64_t samples = 0, rays = 0;
-    uint32_t min_samples = 0, max_samples = 0;  // of a pixel
-    uint64_t non_finite = 0;
+    uint32_t min_samples = 0, max_samples = 0;   // of a pixel
+    uint64_t non_finite = 0;                     // samples left out: not finite, or beyond what the sums hold
     std::array<uint32_t, 3> first_non_finite{};  // x, y, pass; meaningful where non_finite > 0
+    uint64_t unknown_errors = 0;                 // pixels whose variance or bias is beyond the range of a float
     // Estimated relMSE: the mean over pixels and channels of (Var(mean) + bias^2) / (mean^2 + 0.01). Samples count as independent,
-    // which overstates the error of a stratified sampler. The bias is that of attach_bias, else 0. NaN below two samples a pixel.
+    // which overstates the error of a stratified sampler. The bias is that of attach_bias, else 0. NaN below two samples a pixel,
+    // and with unknown_errors.
     double estimated_relmse = 0.0;
     EstimateHealth health;  // whether that can be trusted
 };
@@ -45,7 +47,8 @@ class Film {
     void download();  // what the device has added up; the functions below look at the last download
     FilmSummary summary() const;
     std::vector<float> rgb() const;  // [height][width][3]
-    // R, G, B and the features albedo, normal, depth, variance (of the mean), samples.
+    // R, G, B and the features albedo, normal, depth, variance (of the mean), samples. What is beyond the range of a float is its
+    // largest number.
     Image image() const;
     const std::vector<kernel::FilmPixel>& pixels() const { return pixels_; }
 

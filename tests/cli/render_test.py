@@ -41,6 +41,26 @@ def test_every_format_is_written_and_holds_the_same_picture(program, scene, tmp_
     assert struct.unpack(">II", png.read_bytes()[16:24]) == (24, 16)
 
 
+def test_light_beyond_a_float_is_warned_of(program, tmp_path):
+    scene = tmp_path / "bright.pbrt"
+    scene.write_text(
+        'Film "rgb" "integer xresolution" 4 "integer yresolution" 4\nCamera "perspective"\nWorldBegin\n'
+        'LightSource "infinite" "rgb L" [ 1e38 1e38 1e38 ]\n'
+    )
+    pfm, stats_file = tmp_path / "out.pfm", tmp_path / "stats.json"
+    limits = ["--passes", "16", "--target-error", "1"]
+    done = run(program, scene, "-o", pfm, "--stats", stats_file, *limits)
+    assert done.returncode == 0, done.stderr
+    assert "warning: 208 samples were not finite, or too large to be added to the others" in done.stderr
+    assert "warning: the error of 16 pixels is not known" in done.stderr
+    stats = json.loads(stats_file.read_text())
+    assert stats["non_finite_samples"] == 16 * 13  # the fourth sample of each pixel, and those after it
+    assert stats["estimated_error"] is None
+    assert stats["passes"] == 16  # no target is reached by an error that is not known
+    for row in read_pfm(pfm)[2]:
+        assert row == pytest.approx([1e38] * 12, rel=1e-6)
+
+
 def test_exr_holds_the_parameters_of_the_photon_map(program, scene, tmp_path):
     exr = tmp_path / "out.exr"
     choice = "stochastic_hash:slots=2,table_size=0.5"

@@ -19,10 +19,12 @@ KERNEL(emission_probe) {
     EmissionProbe p = probe[0];
     vec3 n = vec3(p.normal);
     Rng rng = rng_begin(p.what.y, index);
-    float choice = rng_float(rng);
+    uint choice = rng_bits(rng);
     float side = rng_float(rng);
     vec2 u = two_numbers(rng);
-    vec2 v = two_numbers(rng);
+    uvec2 v = uvec2(0u);
+    v.x = rng_bits(rng);
+    v.y = rng_bits(rng);
     vec3 flux = vec3(0.0f);
     if (p.what.x == 0u) {
         Emission e;

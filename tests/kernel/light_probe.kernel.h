@@ -55,10 +55,10 @@ KERNEL(light_probe) {
     bool look = true;
     if (sampling) {
         Rng rng = rng_begin(p.what.y, index);
-        float choice = rng_float(rng);
-        vec2 u;
-        u.x = rng_float(rng);
-        u.y = rng_float(rng);
+        uint choice = rng_bits(rng);
+        uvec2 u;
+        u.x = rng_bits(rng);
+        u.y = rng_bits(rng);
         bool any = light_sample(ref_p, choice, u, found);
         if (!any) found.pdf = 0.0f;
         d = found.wi;

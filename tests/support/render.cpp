@@ -9,7 +9,9 @@
 namespace lampyris::test {
 namespace {
 
-Rendered render_description(SceneDescription description, const RenderSettings& settings, Diagnostics& diagnostics) {
+// With seeds from the settings' on, one after the other: the scene is built once.
+std::vector<Rendered> render_description(SceneDescription description, const RenderSettings& settings,
+                                         Diagnostics& diagnostics, uint32_t seeds = 1) {
     BuildOptions options;
     options.resolution = settings.resolution;
     options.crop = settings.crop;
@@ -24,25 +26,29 @@ Rendered render_description(SceneDescription description, const RenderSettings& 
     device_options.settings = settings.device_settings;
     const std::unique_ptr<Device> device = create_device(settings.backend, device_options);
     const DeviceSceneHandle device_scene = device->upload(built.scene);
-    Film film(*device, built.scene, built.settings.crop);
-    RenderSession session(*device, built.scene, device_scene, film, {settings.samples, {}, {}});
-    session.seed = settings.seed;
-    session.sampler = settings.sampler.value_or(built.settings.sampler) == "independent" ? kernel::SAMPLER_INDEPENDENT
-                                                                                         : kernel::SAMPLER_SOBOL;
-    session.max_slice = settings.slice;
-    session.on_progress = settings.on_progress;
-    session.photon_map = settings.photon_map;
-    session.start_at(settings.first_pass);
-    chosen.integrator->render(session);
-    film.download();
-    Rendered result;
-    result.image = film.image();
-    result.summary = film.summary();
-    result.pixels = film.pixels();
-    result.scene_samples = built.settings.samples_per_pixel;
-    result.width = result.image.width;
-    result.height = result.image.height;
-    return result;
+    std::vector<Rendered> results;
+    for (uint32_t i = 0; i < seeds; ++i) {
+        Film film(*device, built.scene, built.settings.crop);
+        RenderSession session(*device, built.scene, device_scene, film, {settings.samples, {}, {}});
+        session.seed = settings.seed + i;
+        session.sampler = settings.sampler.value_or(built.settings.sampler) == "independent"
+                              ? kernel::SAMPLER_INDEPENDENT
+                              : kernel::SAMPLER_SOBOL;
+        session.max_slice = settings.slice;
+        session.on_progress = settings.on_progress;
+        session.photon_map = settings.photon_map;
+        session.start_at(settings.first_pass);
+        chosen.integrator->render(session);
+        film.download();
+        Rendered& result = results.emplace_back();
+        result.image = film.image();
+        result.summary = film.summary();
+        result.pixels = film.pixels();
+        result.scene_samples = built.settings.samples_per_pixel;
+        result.width = result.image.width;
+        result.height = result.image.height;
+    }
+    return results;
 }
 
 }  // namespace
@@ -66,17 +72,24 @@ double Rendered::mean_luminance() const {
     return sum / (double(width) * height);
 }
 
+std::vector<Rendered> render_text_seeds(const std::string& scene_text, const RenderSettings& settings, uint32_t seeds) {
+    auto sources = std::make_shared<Sources>();
+    Diagnostics diagnostics(*sources);
+    return render_description(parse_scene_text("test.pbrt", scene_text, ".", sources, diagnostics), settings,
+                              diagnostics, seeds);
+}
+
 Rendered render_text(const std::string& scene_text, const RenderSettings& settings, const std::string& directory) {
     auto sources = std::make_shared<Sources>();
     Diagnostics diagnostics(*sources);
-    return render_description(parse_scene_text("test.pbrt", scene_text, directory, sources, diagnostics), settings,
-                              diagnostics);
+    return std::move(render_description(parse_scene_text("test.pbrt", scene_text, directory, sources, diagnostics),
+                                        settings, diagnostics)[0]);
 }
 
 Rendered render_file(const std::string& path, const RenderSettings& settings) {
     auto sources = std::make_shared<Sources>();
     Diagnostics diagnostics(*sources);
-    return render_description(parse_scene_file(path, sources, diagnostics), settings, diagnostics);
+    return std::move(render_description(parse_scene_file(path, sources, diagnostics), settings, diagnostics)[0]);
 }
 
 std::vector<std::string> usable_backends() {

@@ -45,6 +45,8 @@ struct Rendered {
 
 // Throws InputError with the scene's errors.
 Rendered render_text(const std::string& scene_text, const RenderSettings& settings, const std::string& directory = ".");
+// With so many seeds from the settings' on, each an image of its own; the scene is built once.
+std::vector<Rendered> render_text_seeds(const std::string& scene_text, const RenderSettings& settings, uint32_t seeds);
 Rendered render_file(const std::string& path, const RenderSettings& settings);
 
 // Backends to test on: all that have a device on this machine.

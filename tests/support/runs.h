@@ -35,6 +35,14 @@ inline Mean mean_of_runs(const std::string& file, RenderSettings settings, int r
     return mean;
 }
 
+// The same of a scene's text.
+inline Mean mean_of_text_runs(const std::string& text, RenderSettings settings, uint32_t runs) {
+    Mean mean;
+    settings.seed = 100;
+    for (const Rendered& rendered : render_text_seeds(text, settings, runs)) mean.add(rendered.mean_luminance());
+    return mean;
+}
+
 inline void expect_mean(const Mean& mean, double expected, double tolerance) {
     EXPECT_LT(std::abs(mean.value() - expected), normal_threshold(kAlpha) * mean.error() + tolerance)
         << mean.value() << " +- " << mean.error();

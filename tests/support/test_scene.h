@@ -26,7 +26,7 @@ inline kernel::TransformRecord transform_of(const glm::dmat4& to) {
 class TestScene {
  public:
     Scene scene;
-    std::vector<float> powers;  // of the lights, in order
+    std::vector<double> powers;  // of the lights, in order
 
     TestScene() {
         scene.transforms.push_back(transform_of(glm::dmat4(1.0)));

@@ -31,7 +31,8 @@ struct TextureScene {
         scene.positions = {1e6f, 0, 0, 1e6f, 1, 0, 1e6f, 0, 1};
         scene.positions.resize(16);
         scene.indices = {0, 1, 2};
-        scene.normals = scene.uvs = scene.distributions = {0.0f};
+        scene.normals = scene.uvs = {0.0f};
+        scene.distributions = {0u};
         scene.texels.assign(std::begin(kNoisePermutation), std::end(kNoisePermutation));  // noise finds its table at 0
         scene.images.resize(1);
         scene.lights.resize(1);

@@ -3,68 +3,131 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <vector>
 
 namespace lampyris {
 namespace {
 
-TEST(LightDistribution, CdfsGoFromZeroToOne) {
-    std::vector<float> tables = {42};
-    const std::vector<float> weights = {0, 1, 0, 3, 0, 0};
+constexpr uint32_t kTotal = kernel::CDF_TOTAL;
+using Tables = std::vector<uint32_t>;
+
+TEST(LightDistribution, CdfsGoFromZeroToTheTotal) {
+    Tables tables = {42};
+    const std::vector<double> weights = {0, 1, 0, 3, 0, 0};
     EXPECT_EQ(append_cdf(weights, tables), 1u);
-    const std::vector<float> expected = {42, 0, 0, 0.25f, 0.25f, 1, 1, 1};
-    EXPECT_EQ(tables, expected);
+    EXPECT_EQ(tables, (Tables{42, 0, 0, kTotal / 4, kTotal / 4, kTotal, kTotal, kTotal}));
 }
 
 TEST(LightDistribution, NoWeightAtAllMeansAllAlike) {
-    std::vector<float> tables;
-    append_cdf(std::vector<float>(4, 0.0f), tables);
-    EXPECT_EQ(tables, (std::vector<float>{0, 0.25f, 0.5f, 0.75f, 1}));
+    Tables tables;
+    append_cdf(std::vector<double>(4, 0.0), tables);
+    EXPECT_EQ(tables, (Tables{0, kTotal / 4, kTotal / 2, kTotal / 4 * 3, kTotal}));
 }
 
 TEST(LightDistribution, WeightsOfAnyScale) {
     const float big = std::numeric_limits<float>::max();
-    std::vector<float> tables;
-    append_cdf(std::vector<float>{big, big, big, big}, tables);
-    EXPECT_EQ(tables, (std::vector<float>{0, 0.25f, 0.5f, 0.75f, 1}));
+    Tables tables;
+    append_cdf(std::vector<double>(4, 1e300), tables);
+    EXPECT_EQ(tables, (Tables{0, kTotal / 4, kTotal / 2, kTotal / 4 * 3, kTotal}));
     tables.clear();
-    append_image_distribution(std::vector<float>{big, big, 1e-30f, big}, 2, 2, tables);
-    EXPECT_FLOAT_EQ(tables[1], 2.0f / 3);
-    EXPECT_EQ(tables[2], 1);
-    EXPECT_EQ(tables[3 + 1], 0.5f);
+    append_image_distribution(std::vector<float>{big, big, 1e-30f, big}, 2, 2, 0.0, tables);
+    EXPECT_NEAR(double(tables[1]), kTotal * 2.0 / 3, 1);
+    EXPECT_EQ(tables[2], kTotal);
+    EXPECT_EQ(tables[3 + 1], kTotal / 2);
+    EXPECT_EQ(tables[6 + 1], 1u);  // next to nothing is not nothing
+}
+
+// Exactly: the numbers of a CDF are its probabilities, and no weight, however small, is without one.
+TEST(LightDistribution, TenMillionWeightsOfAContrastOfABillionAllHaveTheirShare) {
+    constexpr size_t kCount = 10'000'000;
+    std::vector<double> kinds(1000), weights(kCount);
+    for (size_t i = 0; i < kinds.size(); ++i) kinds[i] = i % 7 == 0 ? 0.0 : std::pow(10.0, 9.0 * double(i) / 999.0);
+    uint32_t state = 1;
+    double sum = 0;
+    size_t positive = 0;
+    for (double& weight : weights) {
+        state = state * 747796405u + 2891336453u;
+        weight = kinds[(state >> 8) % 1000];
+        sum += weight;
+        positive += weight > 0;
+    }
+    Tables tables;
+    append_cdf(weights, tables);
+    ASSERT_EQ(tables.size(), kCount + 1);
+    EXPECT_EQ(tables.front(), 0u);
+    EXPECT_EQ(tables.back(), kTotal);
+    size_t lost = 0, given = 0, off = 0;
+    for (size_t i = 0; i < kCount; ++i) {
+        const uint32_t share = tables[i + 1] - tables[i];
+        lost += weights[i] > 0 && share == 0;
+        given += weights[i] == 0 && share != 0;
+        // Of what is shared by weight one more or less, by rounding down.
+        off += weights[i] > 0 && std::abs(share - 1.0 - weights[i] / sum * double(kTotal - positive)) > 1.001;
+    }
+    EXPECT_EQ(lost, 0u);
+    EXPECT_EQ(given, 0u);
+    EXPECT_EQ(off, 0u);
 }
 
 TEST(LightDistribution, RefusesWhatIsNoWeight) {
-    std::vector<float> tables;
-    EXPECT_THROW(append_cdf(std::vector<float>{}, tables), std::invalid_argument);
-    EXPECT_THROW(append_cdf(std::vector<float>{1, -1}, tables), std::invalid_argument);
-    EXPECT_THROW(append_cdf(std::vector<float>{1, std::nanf("")}, tables), std::invalid_argument);
-    EXPECT_THROW(append_cdf(std::vector<float>{std::numeric_limits<float>::infinity()}, tables), std::invalid_argument);
-    EXPECT_THROW(append_image_distribution(std::vector<float>{1, 1, 1}, 2, 2, tables), std::invalid_argument);
+    Tables tables;
+    EXPECT_THROW(append_cdf(std::vector<double>{}, tables), std::invalid_argument);
+    EXPECT_THROW(append_cdf(std::vector<double>{1, -1}, tables), std::invalid_argument);
+    EXPECT_THROW(append_cdf(std::vector<double>{1, std::nan("")}, tables), std::invalid_argument);
+    EXPECT_THROW(append_cdf(std::vector<double>{std::numeric_limits<double>::infinity()}, tables),
+                 std::invalid_argument);
+    EXPECT_THROW(append_image_distribution(std::vector<float>{1, 1, 1}, 2, 2, 0.0, tables), std::invalid_argument);
 }
 
 TEST(LightDistribution, ImagesHaveRowsThenTexels) {
-    std::vector<float> tables;
-    EXPECT_EQ(append_image_distribution(std::vector<float>{1, 3, 0, 0, 6, 6}, 2, 3, tables), 0u);
-    EXPECT_EQ(tables, (std::vector<float>{0, 0.25f, 0.25f, 1, /* rows */ 0, 0.25f, 1, 0, 0.5f, 1, 0, 0.5f, 1}));
+    Tables tables;
+    const uint32_t quarter = kTotal / 4, half = kTotal / 2;
+    EXPECT_EQ(append_image_distribution(std::vector<float>{1, 3, 0, 0, 6, 6}, 2, 3, 0.0, tables), 0u);
+    EXPECT_EQ(tables,
+              (Tables{0, quarter, quarter, kTotal, /* rows */ 0, quarter, kTotal, 0, half, kTotal, 0, half, kTotal}));
+}
+
+// A sun beside it does not take the sky's samples away; what is black gets none of them.
+TEST(LightDistribution, TexelsHaveAShareForAll) {
+    Tables tables;
+    append_image_distribution(std::vector<float>{1e9f, 1, 0, 1}, 2, 2, kEvenLightShare, tables);
+    const double even = kEvenLightShare / 3;
+    EXPECT_NEAR(double(kTotal - tables[1]) / kTotal, even, 1e-8);                          // the lower row
+    EXPECT_NEAR(double(tables[5] - tables[4]) / kTotal * tables[1] / kTotal, even, 1e-8);  // beside the sun
+    EXPECT_EQ(tables[7], 0u);
 }
 
 TEST(LightDistribution, LightsAreChosenByPowerWithAShareForAll) {
     Scene scene;
     scene.lights.resize(3);
-    choose_lights(scene, std::vector<float>{9, 0, 1});
+    choose_lights(scene, std::vector<double>{9, 0, 1});
     EXPECT_EQ(scene.record.lights.x, 3u);
-    EXPECT_FLOAT_EQ(scene.lights[0].emission.w, (1 - kEvenLightShare) * 0.9f + kEvenLightShare / 2);
+    EXPECT_FLOAT_EQ(scene.lights[0].emission.w, (1 - kEvenLightShare) * 0.9 + kEvenLightShare / 2);
     EXPECT_EQ(scene.lights[1].emission.w, 0);
-    EXPECT_FLOAT_EQ(scene.lights[2].emission.w, (1 - kEvenLightShare) * 0.1f + kEvenLightShare / 2);
-    EXPECT_EQ(scene.lights[0].emission.w + scene.lights[1].emission.w + scene.lights[2].emission.w, 1);
+    EXPECT_FLOAT_EQ(scene.lights[2].emission.w, (1 - kEvenLightShare) * 0.1 + kEvenLightShare / 2);
+    EXPECT_FLOAT_EQ(scene.lights[0].emission.w + scene.lights[2].emission.w, 1);
+}
+
+// Powers beyond a float's range count by what they are.
+TEST(LightDistribution, LightsOfAnyPowerHaveTheirShare) {
+    Scene scene;
+    scene.lights.resize(4);
+    choose_lights(scene, std::vector<double>{3e60, 1e60, 1e-60, 0});
+    const double even = kEvenLightShare / 3;
+    EXPECT_FLOAT_EQ(scene.lights[0].emission.w, (1 - kEvenLightShare) * 0.75 + even);
+    EXPECT_FLOAT_EQ(scene.lights[1].emission.w, (1 - kEvenLightShare) * 0.25 + even);
+    EXPECT_FLOAT_EQ(scene.lights[2].emission.w, even);
+    EXPECT_EQ(scene.lights[3].emission.w, 0);
+    EXPECT_EQ(std::bit_cast<float>(scene.record.lights.w), std::numeric_limits<float>::max());
 }
 
 TEST(LightDistribution, NoLightsNeedNoTable) {
     Scene scene;
-    choose_lights(scene, {});
+    choose_lights(scene, std::vector<double>{});
     EXPECT_EQ(scene.record.lights.x, 0u);
     EXPECT_TRUE(scene.distributions.empty());
 }
@@ -84,14 +147,16 @@ TEST(FilterTable, FiltersHaveTheirKnownValues) {
 }
 
 TEST(FilterTable, IntervalsKeepTheirSignAndTablesFollowEachOther) {
-    std::vector<float> tables(5);
+    std::vector<uint32_t> tables(5);
     const auto sinc = [](double x) { return sinc_filter(x, 4, 3); };
     const auto tent = [](double x) { return 1 - x; };
     const uint32_t offset = append_filter_table(sinc, 4, tent, 1, tables);
     EXPECT_EQ(offset, 5u);
     constexpr uint32_t n = kFilterTableSize;
     ASSERT_EQ(tables.size(), 5 + 2 * kFilterTableFloats);
-    const float* x = tables.data() + offset;
+    std::vector<float> numbers;
+    for (const uint32_t bits : tables) numbers.push_back(std::bit_cast<float>(bits));
+    const float* x = numbers.data() + offset;
     const float* y = x + kFilterTableFloats;
     for (uint32_t i = 0; i < n; ++i) {
         EXPECT_GE(x[i] * x[i + 1], 0);
@@ -114,7 +179,7 @@ TEST(FilterTable, IntervalsKeepTheirSignAndTablesFollowEachOther) {
 }
 
 TEST(FilterTable, RefusesAFilterWithoutIntegral) {
-    std::vector<float> tables;
+    std::vector<uint32_t> tables;
     const auto nothing = [](double) { return 0.0; };
     EXPECT_THROW(append_filter_table(nothing, 1, nothing, 1, tables), std::invalid_argument);
 }

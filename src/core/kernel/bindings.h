@@ -19,7 +19,7 @@ SCENE_RO(9, TextureOp, texture_ops)
 SCENE_RO(10, ImageRecord, images)
 SCENE_RO(11, uint, texels)
 SCENE_RO(12, LightRecord, lights)
-SCENE_RO(13, float, distributions)
+SCENE_RO(13, uint, distributions)
 SCENE_RO_PAIRS(14, bvh_nodes)  // two a node: the left child's box, the right one's (BvhNode)
 SCENE_RO(15, vec4, bvh_triangles)
 // 16 and 17 are the Vulkan backend's (its acceleration structure, and the flag of REPORT_UNFINISHED).

@@ -28,6 +28,9 @@ FN Ray camera_ray(vec2 raster, vec2 u_lens) {
     return ray;
 }
 
+// Filter tables are floats among the integers of `distributions`.
+FN float filter_number(uint at) { return uintBitsToFloat(distributions[at]); }
+
 // One coordinate of a smooth filter, from its table (layout.h, CameraRecord.data). `sign` is multiplied by the filter's.
 //
 // The filter is taken as linear between the table's nodes; its absolute value is sampled exactly (inside a cell by the
@@ -37,14 +40,14 @@ FN float sample_filter_table(uint table, uint count, float radius, float u, INOU
     float share = min(abs(centred), ONE_MINUS_EPSILON);
     uint cdf = table + count + 1u;
     // From the guide's interval on; the first step, which chance decides, without a branch.
-    uint cell = uint(distributions[cdf + count + 2u + uint(share * float(count))]);
-    cell += uint(cell + 1u < count && distributions[cdf + cell + 1u] <= share);
-    while (cell + 1u < count && distributions[cdf + cell + 1u] <= share) cell += 1u;
-    float a = distributions[table + cell];
-    float b = distributions[table + cell + 1u];
+    uint cell = uint(filter_number(cdf + count + 2u + uint(share * float(count))));
+    cell += uint(cell + 1u < count && filter_number(cdf + cell + 1u) <= share);
+    while (cell + 1u < count && filter_number(cdf + cell + 1u) <= share) cell += 1u;
+    float a = filter_number(table + cell);
+    float b = filter_number(table + cell + 1u);
     if (a + b < 0.0f) sign = -sign;
     // sample_linear at the share's place in the interval, (share - cdf) / (a + b): the nodes are scaled to make it so.
-    float rest = share - distributions[cdf + cell];
+    float rest = share - filter_number(cdf + cell);
     float root = safe_sqrt(a * a + rest * (abs(b) - abs(a)));
     float x = min(rest / max(abs(a) + root, 1e-20f), ONE_MINUS_EPSILON);
     return copy_sign((float(cell) + x) * (radius / float(count)), centred);
@@ -66,7 +69,7 @@ FN vec2 pixel_filter_sample(vec2 u, OUT(float) weight) {
     uint table_y = table_x + 3u * count + 3u;
     float x = sample_filter_table(table_x, count, camera.filtering.x, u.x, weight);
     float y = sample_filter_table(table_y, count, camera.filtering.y, u.y, weight);
-    weight = weight * (distributions[table_x + 2u * count + 2u] * distributions[table_y + 2u * count + 2u]);
+    weight = weight * (filter_number(table_x + 2u * count + 2u) * filter_number(table_y + 2u * count + 2u));
     return vec2(x, y);
 }
 

@@ -4,7 +4,7 @@
 
 // `weighted`: by multiple importance sampling with the directions that bsdf_sample chooses; a path that takes no such sample
 // wants the whole. `medium`: through which s was reached. wo: local frame.
-FN vec3 direct_light(IN(Surface) s, IN(Frame) frame, IN(Bsdf) bsdf, vec3 wo, uint medium, float u_choice, vec2 u,
+FN vec3 direct_light(IN(Surface) s, IN(Frame) frame, IN(Bsdf) bsdf, vec3 wo, uint medium, uint u_choice, uvec2 u,
                      bool weighted, INOUT(uint) rays) {
     LightSample light;
     if (!light_sample(s.position, u_choice, u, light)) return vec3(0.0f);

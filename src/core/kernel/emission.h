@@ -70,8 +70,9 @@ FN bool emit_from_point(uint index, vec2 u_place, vec2 u_direction, INOUT(Emissi
     return true;
 }
 
-// The start of a photon, from six uniform numbers; false where the choice carries no light.
-FN bool emit_photon(float u_choice, float u_side, vec2 u_place, vec2 u_direction, OUT(Emission) e) {
+// The start of a photon, from six uniform numbers, those of choices as bits (random.h); false where the choice carries no
+// light. Power beyond the range of a float stays infinite: what gathers it is not finite either, and is counted (film_add).
+FN bool emit_photon(uint u_choice, float u_side, vec2 u_place, uvec2 u_direction, OUT(Emission) e) {
     e.origin = vec3(0.0f);
     e.direction = vec3(0.0f, 0.0f, 1.0f);
     e.power = vec3(0.0f);
@@ -79,11 +80,11 @@ FN bool emit_photon(float u_choice, float u_side, vec2 u_place, vec2 u_direction
     e.light = NONE;
     e.medium = MEDIUM_VACUUM;
     if (count == 0u) return false;
-    e.light = count == 1u ? 0u : find_interval(scene[0].lights.z, count, u_choice);
+    e.light = count == 1u ? 0u : find_interval(scene[0].lights.z, count, cdf_number(u_choice));
     uint kind = lights[e.light].data.x;
     bool found = false;
     if (HAS(EFFECT_AREA_LIGHTS) && kind <= LIGHT_GEOMETRY) {
-        found = emit_from_area(e.light, u_side, u_place, u_direction, e);
+        found = emit_from_area(e.light, u_side, u_place, unit_floats(u_direction), e);
     } else if (HAS(EFFECT_ENVIRONMENT) && (kind == LIGHT_INFINITE || kind == LIGHT_INFINITE_IMAGE)) {
         vec3 to_light;
         vec3 radiance;
@@ -101,14 +102,14 @@ FN bool emit_photon(float u_choice, float u_side, vec2 u_place, vec2 u_direction
         e.power = vec3(light.emission) * (distant_area() / light.emission.w);
         found = true;
     } else if (HAS(EFFECT_POINT_LIGHTS) || HAS(EFFECT_PROJECTION_LIGHTS)) {
-        found = emit_from_point(e.light, u_place, u_direction, e);
+        found = emit_from_point(e.light, u_place, unit_floats(u_direction), e);
     }
     if (HAS(EFFECT_MEDIUM) && found &&
         (kind == LIGHT_INFINITE || kind == LIGHT_INFINITE_IMAGE || kind == LIGHT_DISTANT)) {
         e.medium = light_medium(e.light, e.direction, e.direction);
         e.power *= medium_transmittance(e.medium, INFINITE_DISTANCE);
     }
-    return found && !is_black(e.power) && is_finite3(e.power);
+    return found && !is_black(e.power);
 }
 
 #endif

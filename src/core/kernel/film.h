@@ -20,15 +20,16 @@ FN float compensated_add(float sum, float value, INOUT(float) low) {
     return next;
 }
 
-// Adds one sample. Radiance that is not finite is counted and located, not averaged in.
-FN void film_add(INOUT(FilmPixel) p, vec3 radiance, float weight, uint pass) {
+// Adds one sample. Radiance that is not finite, or that the sums cannot hold with what they have, is counted and located, not
+// averaged in: then the result is false. Squares overflow sooner (above 1.8e19), and stay infinite: the variance is not known.
+FN bool film_add(INOUT(FilmPixel) p, vec3 radiance, float weight, uint pass) {
     p.counts.x += 1u;
-    if (!is_finite3(radiance)) {
+    vec3 value = radiance * weight;
+    if (!is_finite3(vec3(p.sum) + value)) {
         if (p.counts.z == 0u) p.counts.w = pass;
         p.counts.z += 1u;
-        return;
+        return false;
     }
-    vec3 value = radiance * weight;
     p.sum.x = compensated_add(p.sum.x, value.x, p.low.x);
     p.sum.y = compensated_add(p.sum.y, value.y, p.low.y);
     p.sum.z = compensated_add(p.sum.z, value.z, p.low.z);
@@ -36,11 +37,11 @@ FN void film_add(INOUT(FilmPixel) p, vec3 radiance, float weight, uint pass) {
     p.squares.x += value.x * value.x;
     p.squares.y += value.y * value.y;
     p.squares.z += value.z * value.z;
+    return true;
 }
 
-// Adds one sample's estimate of its own bias.
+// Adds the estimate of its own bias of a sample that was added; not finite, it leaves the bias unknown.
 FN void film_add_bias(INOUT(FilmBias) p, vec3 bias, float weight) {
-    if (!is_finite3(bias)) return;
     vec3 value = bias * weight;
     p.sum += vec4(value.x, value.y, value.z, 0.0f);
     p.squares += vec4(value.x * value.x, value.y * value.y, value.z * value.z, 0.0f);

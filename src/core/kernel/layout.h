@@ -179,12 +179,16 @@ CONST uint LIGHT_PROJECTION = 7u;
 CONST uint LIGHT_GONIOMETRIC = 8u;
 
 CONST uint LIGHT_TWO_SIDED = 1u;
+CONST uint LIGHT_PASSED = 2u;  // a light of constant alpha 0: it emits, and all rays pass it
+
+CONST uint CDF_TOTAL = 0x80000000u;  // where a CDF in `distributions` ends
 
 // Lights are ordered: the infinite ones first (SceneRecord says how many), so that an escaping ray visits only those.
 //
-// `distributions` holds, at offsets that records give: the CDF by which lights are chosen (number of lights + 1 floats, from 0
-// to 1); for each infinite image of w x h texels a CDF of its rows (h + 1 floats), then for each row a CDF of its texels (w + 1);
-// and the tables of a smooth pixel filter (CameraRecord). The probability of an interval is the difference of its two numbers.
+// `distributions` holds, at offsets that records give: the CDF by which lights are chosen (number of lights + 1 integers, from 0
+// to CDF_TOTAL); for each infinite image of w x h texels a CDF of its rows (h + 1 integers), then for each row a CDF of its texels
+// (w + 1); and the tables of a smooth pixel filter (CameraRecord; floats' bits). The probability of an interval is the difference of
+// its two numbers over CDF_TOTAL, which is exact, and not 0 for any positive weight (distribution.h).
 // Images of light are looked up at points of the equal-area octahedral square (infinite, goniometric) or of the picture
 // (projection), (0, 0) being the upper left corner; they are FILTER_POINT, as pbrt's, and infinite ones WRAP_OCTAHEDRAL.
 // Transforms of lights are the directive's own: that a goniometric image's pole is the light's y axis, and that images have
@@ -233,7 +237,7 @@ struct CameraRecord {
 struct SceneRecord {
     CameraRecord camera;
     uvec4
-        lights;  // number of lights, number of infinite ones, offset of the choosing CDF in `distributions` (count + 1 floats), luminous power of all (a float's bits, W)
+        lights;  // number of lights, number of infinite ones, offset of the choosing CDF in `distributions` (count + 1 integers), luminous power of all (a float's bits, W)
     uvec4 counts;  // geometries, instances, root node of the top-level BVH, effects that the scene calls for
     uvec4 media;   // x: the camera's medium
     vec4 bounds;   // world's bounding sphere: centre, radius
@@ -249,7 +253,8 @@ struct FilmPixel {
     vec4 squares;  // sums of squares of the weighted radiance, for the variance; w: what the first hits' depth sums to
     vec4 albedo;   // sum over samples; w: number of samples that hit something
     vec4 normal;   // sum over samples
-    uvec4 counts;  // samples, rays, non-finite samples, pass of the first non-finite sample
+    uvec4
+        counts;  // samples, rays, samples left out (not finite, or beyond what the sums hold), pass of the first of those
 };
 
 // What an integrator knows of its bias: sums over samples, as FilmPixel's.

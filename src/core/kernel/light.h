@@ -12,7 +12,7 @@ struct LightSample {
     vec3 radiance;   // arriving from there, if nothing is in between; delta lights: radiance / pdf is what counts
     float pdf;       // solid angle, times the probability of choosing the light; delta lights: the latter alone
     float distance;  // INFINITE_DISTANCE: the shadow ray leaves the scene
-    uint is_delta;   // 1: no ray finds this light by chance
+    uint is_delta;   // 1: no ray finds this light by chance; pdf may be a density all the same (LIGHT_PASSED)
     uint light;
 };
 
@@ -54,8 +54,10 @@ FN float light_pdf(IN(Surface) s, vec3 ref_p, vec3 wi) {
     return pdf * light.emission.w;
 }
 
-// The share of a masked light that is there: rays find it with this probability.
+// The share of a masked light that is there: rays find it with this probability. A light that all rays pass sends all of its
+// light, as pbrt's.
 FN float light_alpha(IN(LightRecord) light, vec3 position, vec3 ng, vec2 uv) {
+    if ((light.data.y & LIGHT_PASSED) != 0u) return 1.0f;
     TextureContext context;
     context.position = position;
     context.normal = ng;
@@ -93,7 +95,10 @@ FN bool sample_area_light(uint index, vec3 ref_p, vec2 u, INOUT(LightSample) s) 
     s.distance = shape.distance;
     s.pdf = shape.pdf * light.emission.w;
     s.radiance = area_emission(index, shape.position, shape.ng, shape.uv, -shape.wi);
-    if (HAS(EFFECT_ALPHA)) s.radiance = s.radiance * light_alpha(light, shape.position, shape.ng, shape.uv);
+    if (HAS(EFFECT_ALPHA)) {
+        s.radiance = s.radiance * light_alpha(light, shape.position, shape.ng, shape.uv);
+        s.is_delta = (light.data.y & LIGHT_PASSED) != 0u ? 1u : 0u;
+    }
     return !is_black(s.radiance);
 }
 
@@ -143,13 +148,14 @@ FN bool sample_point_light(uint index, vec3 ref_p, INOUT(LightSample) s) {
 
 // ---- All lights ------------------------------------------------------------------------------------------------------
 
-// Of so many lights one is chosen by the first number of the place on it, which keeps enough digits for the place; no number is
-// needed for the choice, and both are stratified together.
+// Of so many lights one is chosen by the first number of the place on it, which keeps enough digits for the place (the share of
+// samples that all lights have alike sees to that); no number is needed for the choice, and both are stratified together.
 CONST uint LIGHTS_CHOSEN_BY_PLACE = 256u;
 FN bool light_choice_needs_number() { return scene[0].lights.x > LIGHTS_CHOSEN_BY_PLACE; }
 
-// Chooses a light (in proportion to its power) and samples it from ref_p; false where no light arrives.
-FN bool light_sample(vec3 ref_p, float u_choice, vec2 u_place, OUT(LightSample) s) {
+// Chooses a light (in proportion to its power) and samples it from ref_p, by the bits of random numbers (random.h); false where
+// no light arrives.
+FN bool light_sample(vec3 ref_p, uint u_choice, uvec2 u_place, OUT(LightSample) s) {
     s.wi = vec3(0.0f, 0.0f, 1.0f);
     s.radiance = vec3(0.0f);
     s.pdf = 0.0f;
@@ -158,17 +164,20 @@ FN bool light_sample(vec3 ref_p, float u_choice, vec2 u_place, OUT(LightSample) 
     uint count = scene[0].lights.x;
     s.light = NONE;
     if (count == 0u) return false;
-    vec2 u = u_place;
+    uvec2 u = u_place;
     if (light_choice_needs_number()) {
-        s.light = find_interval(scene[0].lights.z, count, u_choice);
+        s.light = find_interval(scene[0].lights.z, count, cdf_number(u_choice));
     } else if (count == 1u) {
         s.light = 0u;
     } else {
-        s.light = find_interval(scene[0].lights.z, count, u.x);
-        u.x = place_in_interval(scene[0].lights.z + s.light, u.x);
+        uint number = cdf_number(u.x);
+        s.light = find_interval(scene[0].lights.z, count, number);
+        float place = place_in_interval(scene[0].lights.z + s.light, number, 0.5f);
+        // Bits again: those beyond a float's are made of the other number's.
+        u.x = (uint(place * 16777216.0f) << 8u) | (hash32(u.y) >> 24u);
     }
     uint kind = lights[s.light].data.x;
-    if (HAS(EFFECT_AREA_LIGHTS) && kind <= LIGHT_GEOMETRY) return sample_area_light(s.light, ref_p, u, s);
+    if (HAS(EFFECT_AREA_LIGHTS) && kind <= LIGHT_GEOMETRY) return sample_area_light(s.light, ref_p, unit_floats(u), s);
     if (HAS(EFFECT_ENVIRONMENT) && (kind == LIGHT_INFINITE || kind == LIGHT_INFINITE_IMAGE)) {
         return environment_sample(s.light, u, s.wi, s.radiance, s.pdf) && !is_black(s.radiance);
     }

@@ -31,6 +31,11 @@ FN uvec3 pcg3d(uvec3 v) {
 
 // [0, 1) with 24 bits.
 FN float unit_float(uint bits) { return float(bits >> 8u) * 5.9604644775390625e-8f; }
+FN vec2 unit_floats(uvec2 bits) { return vec2(unit_float(bits.x), unit_float(bits.y)); }
+
+// A probability in [0, 1] rounded up to what `u < chance` has for a unit_float u: what is weighted by its inverse must be kept
+// exactly that often, however small it is.
+FN float exact_chance(float chance) { return ceil(chance * 16777216.0f) * 5.9604644775390625e-8f; }
 
 // Owen scrambling of bit-reversed numbers by hashing (Laine and Karras 2011, constants by Vegdahl 2021; used as in Burley
 // 2020, "Practical Hash-based Owen Scrambling").
@@ -80,39 +85,42 @@ FN uint scramble_seed(uint seed, uint which) {
 }
 
 // The numbers of a point, bit-reversed and not yet scrambled, in the way `way` of scrambling them.
-FN vec2 scrambled_point(uvec2 reversed, uint seed, uint way) {
+FN uvec2 scrambled_point(uvec2 reversed, uint seed, uint way) {
     uint x = scramble_reversed(reversed.x, scramble_seed(seed, 2u * way));
     uint y = scramble_reversed(reversed.y, scramble_seed(seed, 2u * way + 1u));
-    uvec2 bits = bitfieldReverse(uvec2(x, y));
-    return vec2(unit_float(bits.x), unit_float(bits.y));
+    return bitfieldReverse(uvec2(x, y));
 }
 
-FN vec2 independent_2d(IN(Sampler) s, uint dimension) {
+FN uvec2 independent_2d(IN(Sampler) s, uint dimension) {
     uvec3 bits = pcg3d(uvec3(s.key, s.index, dimension));
-    return vec2(unit_float(bits.x), unit_float(bits.y));
+    return uvec2(bits.x, bits.y);
 }
 
-// A number by its dimension, for those who skip what they do not need: a dimension keeps its meaning in every sample.
-FN float sample_1d_at(IN(Sampler) s, uint dimension) {
+// A number by its dimension, for those who skip what they do not need: a dimension keeps its meaning in every sample. The
+// numbers' 32 bits are for choices among many (distribution.h); the numbers in [0, 1) are the same ones.
+FN uint sample_bits_1d_at(IN(Sampler) s, uint dimension) {
     if (s.kind == SAMPLER_INDEPENDENT) return independent_2d(s, dimension).x;
     uint seed = hash_combine(s.key, dimension);
     uint shuffled = bitfieldReverse(scramble_reversed(s.reversed, seed));
-    return unit_float(bitfieldReverse(scramble_reversed(shuffled, scramble_seed(seed, 0u))));
+    return bitfieldReverse(scramble_reversed(shuffled, scramble_seed(seed, 0u)));
 }
 
-FN vec2 sample_2d_at(IN(Sampler) s, uint dimension) {
+FN uvec2 sample_bits_2d_at(IN(Sampler) s, uint dimension) {
     if (s.kind == SAMPLER_INDEPENDENT) return independent_2d(s, dimension);
     uint seed = hash_combine(s.key, dimension);
     uint shuffled = bitfieldReverse(scramble_reversed(s.reversed, seed));
     return scrambled_point(uvec2(shuffled, sobol_second_reversed(shuffled)), seed, 0u);
 }
 
-// Two pairs of numbers, (x, y) and (z, w), for integrands that are sums of a function of the one and a function of the other:
+FN float sample_1d_at(IN(Sampler) s, uint dimension) { return unit_float(sample_bits_1d_at(s, dimension)); }
+FN vec2 sample_2d_at(IN(Sampler) s, uint dimension) { return unit_floats(sample_bits_2d_at(s, dimension)); }
+
+// The bits of two pairs of numbers, (x, y) and (z, w), for integrands that are sums of a function of the one and a function of the other:
 // they are one point, scrambled in two ways, so that each pair is stratified, but not both together. Two points of their own
 // would serve such integrands no better. Takes the dimensions of two pairs.
-FN vec4 sample_2d_2d_at(IN(Sampler) s, uint dimension) {
-    vec2 a;
-    vec2 b;
+FN uvec4 sample_bits_2d_2d_at(IN(Sampler) s, uint dimension) {
+    uvec2 a;
+    uvec2 b;
     if (s.kind == SAMPLER_INDEPENDENT) {
         a = independent_2d(s, dimension);
         b = independent_2d(s, dimension + 2u);
@@ -123,7 +131,7 @@ FN vec4 sample_2d_2d_at(IN(Sampler) s, uint dimension) {
         a = scrambled_point(reversed, seed, 0u);
         b = scrambled_point(reversed, seed, 1u);
     }
-    return vec4(a.x, a.y, b.x, b.y);
+    return uvec4(a.x, a.y, b.x, b.y);
 }
 
 // The next numbers.
@@ -150,9 +158,10 @@ FN Rng rng_begin(uint a, uint b) {
     return r;
 }
 
-FN float rng_float(INOUT(Rng) r) {
+FN uint rng_bits(INOUT(Rng) r) {
     r.counter += 1u;
-    return unit_float(hash32(r.key + r.counter * 0x9e3779b9u));
+    return hash32(r.key + r.counter * 0x9e3779b9u);
 }
+FN float rng_float(INOUT(Rng) r) { return unit_float(rng_bits(r)); }
 
 #endif

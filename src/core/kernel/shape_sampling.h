@@ -236,6 +236,13 @@ FN float sphere_cone(vec4 params, vec3 ref_p) {
     return sin2 / (1.0f + sqrt(1.0f - sin2));
 }
 
+// Whether all light of a whole sphere that reaches a point outside comes from the side that faces it: not where rays pass that side
+// and the far one emits inwards.
+FN bool sphere_hides_its_inside(IN(GeometryRecord) g) {
+    if (!HAS(EFFECT_ALPHA) || (g.ids.z == NONE && g.alpha.x >= 1.0f)) return true;
+    return (g.data.y & GEOMETRY_FLIP) == 0u && (lights[g.ids.y].data.y & LIGHT_TWO_SIDED) == 0u;
+}
+
 FN AreaSample sample_quadric_area(uint geometry, vec2 u) {
     GeometryRecord g = geometries[geometry];
     vec3 p = sample_quadric_point(g.data.x, g.params, u);
@@ -255,7 +262,7 @@ FN bool sample_quadric_light(uint geometry, vec3 ref_p, vec2 u, OUT(ShapeSample)
     TransformRecord m = transforms[g.ids.w];
     uint kind = g.data.x;
     s.uv = vec2(0.0f);
-    if (kind == GEOMETRY_SPHERE && sphere_is_whole(g.params)) {
+    if (kind == GEOMETRY_SPHERE && sphere_is_whole(g.params) && sphere_hides_its_inside(g)) {
         vec3 o = transform_point(m.from0, m.from1, m.from2, ref_p);
         float one_minus_cos_max = sphere_cone(g.params, o);
         if (one_minus_cos_max > 0.0f) {
@@ -296,7 +303,7 @@ FN float pdf_quadric_light(uint geometry, vec3 ref_p, vec3 position, vec3 ng, ve
     GeometryRecord g = geometries[geometry];
     TransformRecord m = transforms[g.ids.w];
     uint kind = g.data.x;
-    if (kind == GEOMETRY_SPHERE && sphere_is_whole(g.params)) {
+    if (kind == GEOMETRY_SPHERE && sphere_is_whole(g.params) && sphere_hides_its_inside(g)) {
         float one_minus_cos_max = sphere_cone(g.params, transform_point(m.from0, m.from1, m.from2, ref_p));
         if (one_minus_cos_max > 0.0f) {
             float stretch = 1.0f / length_of(transform_vector(m.from0, m.from1, m.from2, wi));

@@ -52,7 +52,7 @@ void build_diffuse(AreaLightContext& context) {
         if (light.texture != kNone)
             light.texture_average =
                 context.build.textures.average(context.build.scene.texture_ops[light.texture].data.z);
-        light.power_luminance = luminance_of(light.texture_average);
+        light.power_luminance = float(luminance_of(light.texture_average));
         context.build.ask(kernel::EFFECT_LIGHT_TEXTURES, light.asked_by);
         reader.find("L");
     } else {
@@ -119,13 +119,16 @@ void add_area_light(ShapeContext& context, kernel::LightRecord record, uint32_t 
         radiance = emitted > 0.0f ? radiance * (light.power / emitted) : glm::vec3(0.0f);
     }
     record.data.y = light.two_sided ? kernel::LIGHT_TWO_SIDED : 0u;
+    const kernel::GeometryRecord& shape = context.build.scene.geometries[geometry];
+    if (shape.ids.z == kernel::NONE && shape.alpha.x == 0.0f) record.data.y |= kernel::LIGHT_PASSED;
     record.data.z = light.texture;
     record.data.w = kernel::NONE;
     record.ids = {geometry, primitive, 0u, 0u};
     record.emission = {radiance, 0.0f};
-    const glm::vec3 average = light.texture == kNone ? radiance : radiance * light.texture_average;
+    const glm::dvec3 average =
+        glm::dvec3(radiance) * (light.texture == kNone ? glm::dvec3(1.0) : glm::dvec3(light.texture_average));
     context.build.lights.push_back(
-        {record, luminance_of(average) * sides * area * std::numbers::pi_v<float>, false, context.shape.location});
+        {record, luminance_of(average) * sides * area * std::numbers::pi, false, context.shape.location});
     if (record.data.x == kernel::LIGHT_GEOMETRY) context.build.ask(kernel::EFFECT_QUADRIC_LIGHTS, light.asked_by);
 }
 

@@ -9,10 +9,6 @@
 
 namespace lampyris {
 
-namespace {
-constexpr float kLargestPower = 1e30f;
-}
-
 void build_lights(BuildContext& context) {
     for (LightDescription& light : context.description.lights) {
         const LightFactory* factory = light_registry().find(light.type);
@@ -42,8 +38,8 @@ void finish_lights(BuildContext& context) {
     for (kernel::GeometryRecord& geometry : scene.geometries)
         if (geometry.ids.y != kernel::NONE) geometry.ids.y += infinite;
 
-    const float radius = scene.record.bounds.w;
-    std::vector<float> powers;
+    const double radius = double(scene.record.bounds.w);
+    std::vector<double> powers;
     for (const auto& light : all) {
         const kernel::vec4& emission = light.record.emission;
         if (!std::isfinite(emission.x) || !std::isfinite(emission.y) || !std::isfinite(emission.z))
@@ -55,9 +51,8 @@ void finish_lights(BuildContext& context) {
             context.diagnostics.error(light.location, "the light has no finite position or direction",
                                       "the transform in force here scales by 0, or numbers are out of range?");
         scene.lights.push_back(light.record);
-        // Weights for choosing, no more: what is too large to count is chosen as often as can be.
-        const float power = light.power * (light.scales_with_scene ? radius * radius : 1.0f);
-        powers.push_back(std::isfinite(power) ? std::clamp(power, 0.0f, kLargestPower) : kLargestPower);
+        const double power = light.power * (light.scales_with_scene ? radius * radius : 1.0);
+        powers.push_back(std::isfinite(power) ? power : 0.0);  // what is not finite was told above
     }
     scene.record.lights.x = uint32_t(all.size());
     scene.record.lights.y = infinite;

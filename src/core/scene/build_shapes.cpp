@@ -21,15 +21,16 @@ uint32_t ShapeContext::add_geometry(uint32_t kind, uint32_t flags, uint32_t prim
     record.ids = {material, kernel::NONE, kernel::NONE, kernel::NONE};
     record.attributes = {kernel::NONE, kernel::NONE, primitive_count,
                          build.medium(shape.interior_medium) << 16 | build.medium(shape.exterior_medium)};
-    const FloatSlot alpha = read_float(build, reader, "alpha");
+    FloatSlot alpha = read_float(build, reader, "alpha");
+    // A texture that is the same everywhere is that number: a light asks for it (LIGHT_PASSED), as pbrt-v4's do.
+    if (alpha.texture != kNone) {
+        const kernel::TextureOp& op = build.scene.texture_ops[alpha.texture];
+        if (op.data.x == kernel::TEXTURE_CONSTANT && (op.data.y & 1u) != 0u)
+            alpha = {std::clamp(op.a.x, 0.0f, 1.0f), kNone, true};
+    }
     record.ids.z = alpha.texture;
     record.alpha.x = alpha.value;
-    if (alpha.texture != kNone || alpha.value < 1.0f) {
-        build.ask(kernel::EFFECT_ALPHA, asked_by);
-        if (area_light && alpha.texture == kNone && alpha.value == 0.0f)
-            build.diagnostics.unsupported(reader.location("alpha"), "an area light that rays pass (alpha 0)",
-                                          "pbrt-v4's light without a surface; skipped, it emits nothing");
-    }
+    if (alpha.texture != kNone || alpha.value < 1.0f) build.ask(kernel::EFFECT_ALPHA, asked_by);
     build.scene.geometries.push_back(record);
     return uint32_t(build.scene.geometries.size() - 1);
 }

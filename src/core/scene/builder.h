@@ -53,7 +53,7 @@ struct BuildContext {
     // Lights in two groups, since the infinite ones come first in Scene::lights; the weights are powers.
     struct PendingLight {
         kernel::LightRecord record;
-        float power = 0.0f;  // luminous; of infinite and distant lights: per unit of the scene's radius squared
+        double power = 0.0;  // luminous; of infinite and distant lights: per unit of the scene's radius squared
         bool scales_with_scene = false;
         Location location;  // of the directive
     };

@@ -1,6 +1,6 @@
 #include "core/scene/filter_table.h"
 
-#include <array>
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -13,10 +13,9 @@ double sinc(double x) {
     return std::abs(y) < 1e-5 ? 1.0 : std::sin(y) / y;
 }
 
-void append_axis(const std::function<double(double)>& filter, double radius, std::vector<float>& distributions) {
+void append_axis(const std::function<double(double)>& filter, double radius, std::vector<uint32_t>& distributions) {
     constexpr uint32_t n = kFilterTableSize;
     std::vector<double> node(n + 1);
-    std::array<float, n> guide{};
     for (uint32_t i = 0; i <= n; ++i) node[i] = filter(radius * i / n);
     // A change of sign is put at the nearer node, so that each interval has one sign.
     for (uint32_t i = 0; i < n; ++i) {
@@ -29,21 +28,21 @@ void append_axis(const std::function<double(double)>& filter, double radius, std
     }
     if (!(integral > 0) || !std::isfinite(absolute))
         throw std::invalid_argument("a pixel filter's integral is not positive");
-    for (const double value : node) distributions.push_back(float(value / absolute));
+    const auto add = [&](double value) { distributions.push_back(std::bit_cast<uint32_t>(float(value))); };
+    for (const double value : node) add(value / absolute);
     double below = 0;
-    distributions.push_back(0.0f);
+    std::vector<double> cdf{0.0};
     for (uint32_t i = 0; i < n; ++i) {
         below += std::abs(node[i] + node[i + 1]);
-        distributions.push_back(float(below / absolute));
+        cdf.push_back(double(float(below / absolute)));
     }
-    distributions.push_back(float(absolute / integral));
+    for (const double value : cdf) add(value);
+    add(absolute / integral);
     // Where to look for a number between i/n and (i+1)/n: at or before its interval, however i = floor(u n) was rounded.
-    const auto cdf = distributions.end() - (n + 2);
     for (uint32_t i = 0, cell = 0; i < n; ++i) {
-        while (cell + 1 < n && double(cdf[std::ptrdiff_t(cell) + 1]) <= double(i) / n - 1e-6) ++cell;
-        guide[i] = float(cell);
+        while (cell + 1 < n && cdf[cell + 1] <= double(i) / n - 1e-6) ++cell;
+        add(cell);
     }
-    distributions.insert(distributions.end(), guide.begin(), guide.end());
 }
 
 }  // namespace
@@ -65,7 +64,7 @@ double sinc_filter(double x, double radius, double tau) { return std::abs(x) > r
 
 uint32_t append_filter_table(const std::function<double(double)>& x_filter, double x_radius,
                              const std::function<double(double)>& y_filter, double y_radius,
-                             std::vector<float>& distributions) {
+                             std::vector<uint32_t>& distributions) {
     const auto offset = uint32_t(distributions.size());
     append_axis(x_filter, x_radius, distributions);
     append_axis(y_filter, y_radius, distributions);

@@ -10,7 +10,7 @@ namespace lampyris {
 // Intervals of a table between the pixel's centre and the filter's radius: linear interpolation is then within 0.1 % of
 // the filter's peak, also for the lobes of a sinc of radius 4.
 inline constexpr uint32_t kFilterTableSize = 128;
-// Floats of one axis: nodes, CDF, what the absolute value integrates to over the filter's integral, guide.
+// Floats (their bits) of one axis: nodes, CDF, what the absolute value integrates to over the filter's integral, guide.
 inline constexpr uint32_t kFilterTableFloats = 3 * kFilterTableSize + 3;
 
 // The filters of pbrt-v4 (4th edition, section 8.8), by the distance x from the centre in pixels; not normalised.
@@ -22,6 +22,6 @@ double sinc_filter(double x, double radius, double tau);  // sinc windowed by th
 // kFilterTableSize intervals each. Throws std::invalid_argument if a filter's integral is not positive.
 uint32_t append_filter_table(const std::function<double(double)>& x_filter, double x_radius,
                              const std::function<double(double)>& y_filter, double y_radius,
-                             std::vector<float>& distributions);
+                             std::vector<uint32_t>& distributions);
 
 }  // namespace lampyris

@@ -99,6 +99,7 @@ ImageStore::Texels ImageStore::pack(const Image& image, TexelEncoding encoding, 
     const bool as_is = grey ? image.channels == 1 : image.channel_names == std::vector<std::string>{"R", "G", "B"};
     if (!as_is) converted = image.rgb();
     const Image& source = converted.channels ? converted : image;
+    const bool emits = encoding.emits;
     const bool integers = image.storage != Image::Storage::kHalf && image.storage != Image::Storage::kFloat;
     if (!integers)
         encoding = {TexelEncoding::Kind::kLinear, 1.0f};
@@ -122,12 +123,16 @@ ImageStore::Texels ImageStore::pack(const Image& image, TexelEncoding encoding, 
         return uint32_t(std::lround(std::clamp(source.pixels[i], 0.0f, 1.0f) * 255.0f));
     };
     const float largest = texels.format == kernel::TEXEL_RGBA16F ? kLargestHalf : std::numeric_limits<float>::max();
-    size_t replaced = 0;
+    size_t replaced = 0, negative = 0, first_negative = 0;
     const auto light = [&](size_t i) {
         float x = source.pixels[i];
         if (integers) x = decode(x, encoding);
         if (std::isnan(x)) ++replaced, x = 0.0f;
         if (std::abs(x) > largest) ++replaced, x = std::copysign(largest, x);
+        if (emits && x < 0.0f) {
+            if (negative++ == 0) first_negative = i / stride;
+            x = 0.0f;
+        }
         return x;
     };
     for (size_t p = 0; p < pixels; ++p) {
@@ -149,6 +154,11 @@ ImageStore::Texels ImageStore::pack(const Image& image, TexelEncoding encoding, 
         diagnostics_.warning(
             where, fmt::format("{} holds {} numbers that are not finite or too large for its format", name, replaced),
             "NaN is taken for 0, the others for the largest number");
+    if (negative > 0)
+        diagnostics_.warning(where,
+                             fmt::format("{} holds {} negative numbers, the first in texel ({}, {})", name, negative,
+                                         first_negative % texels.width, first_negative / texels.width),
+                             "light is at least 0: they are taken for 0");
     return texels;
 }
 

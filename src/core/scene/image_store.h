@@ -26,6 +26,7 @@ namespace lampyris {
 struct TexelEncoding {
     enum class Kind { kOfFile, kLinear, kSrgb, kGamma } kind = Kind::kOfFile;
     float gamma = 1.0f;  // light = number^gamma, for kGamma
+    bool emits = false;  // an image of light: numbers below 0 are taken for 0
     auto operator<=>(const TexelEncoding&) const = default;
 };
 
@@ -39,7 +40,7 @@ class ImageStore {
     ImageStore(Scene& scene, Diagnostics& diagnostics) : scene_(scene), diagnostics_(diagnostics) {}
 
     // The index in Scene::images of a file. Throws InputError that says why it cannot be read. Numbers that are not finite
-    // are replaced, with a warning at `where`.
+    // are replaced, and negative ones of what emits, with a warning at `where`.
     uint32_t load(const std::string& path, TexelEncoding encoding, ImageLookup lookup, Location where);
     // The same for an image in memory; `encoding` applies to its storage as it does to a file's, `name` is for messages.
     uint32_t add(const Image& image, TexelEncoding encoding, ImageLookup lookup, const std::string& name,

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <glm/glm.hpp>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -83,7 +84,7 @@ std::optional<glm::vec3> rgb_value(const Parameter& parameter, SpectrumUse use, 
                           use == SpectrumUse::kAlbedo ? "a reflectance is between 0 and 1" : "it must be at least 0");
         return {};
     }
-    return rec709_from(parameter.color_space, rgb, use);
+    return glm::max(rec709_from(parameter.color_space, rgb, use), glm::vec3(0.0f));
 }
 
 }  // namespace
@@ -130,12 +131,19 @@ std::optional<glm::vec3> spectrum_rgb(const Parameter& parameter, SpectrumUse us
                           "rgb, blackbody or spectrum");
         return {};
     }
-    const std::optional<SampledSpectrum> spectrum = sampled_spectrum(parameter, directory, diagnostics);
+    std::optional<SampledSpectrum> spectrum = sampled_spectrum(parameter, directory, diagnostics);
     if (!spectrum) return {};
+    const auto negative =
+        std::count_if(spectrum->values.begin(), spectrum->values.end(), [](float v) { return v < 0.0f; });
+    if (negative > 0) {
+        diagnostics.warning(place_of(parameter),
+                            fmt::format("spectrum \"{}\" holds {} negative values", parameter.name, negative),
+                            "they are taken for 0");
+        for (float& value : spectrum->values) value = std::max(value, 0.0f);
+    }
     const auto at = [&](float wavelength) { return spectrum->at(wavelength); };
-    if (use == SpectrumUse::kLight) return light_rgb(at);
     // Out of Rec.709's gamut only by a little, and less than no light is none.
-    const glm::vec3 rgb = glm::max(reflectance_rgb(at), glm::vec3(0.0f));
+    const glm::vec3 rgb = glm::max(use == SpectrumUse::kLight ? light_rgb(at) : reflectance_rgb(at), glm::vec3(0.0f));
     return use == SpectrumUse::kAlbedo ? glm::min(rgb, glm::vec3(1.0f)) : rgb;
 }
 

@@ -195,7 +195,9 @@ uint32_t TextureBuilder::image_program(const std::string& filename, glm::vec3 sc
     op.data = {kernel::TEXTURE_IMAGE, kernel::MAPPING_UV << 8, 0, 0};
     op.a = glm::vec4(scale, 0.0f);
     op.m0 = {1.0f, 1.0f, 0.0f, 0.0f};
-    op.data.z = request_image({context_.resolve(filename), {}, {kernel::WRAP_CLAMP, kernel::FILTER_BILINEAR}, where});
+    ImageRequest request{context_.resolve(filename), {}, {kernel::WRAP_CLAMP, kernel::FILTER_BILINEAR}, where};
+    request.encoding.emits = true;
+    op.data.z = request_image(std::move(request));
     TextureProgram program;
     program.ops.push_back(op);
     found->second = emit(program, where, "image");
@@ -208,6 +210,7 @@ uint32_t TextureBuilder::image(const std::string& filename, Content content, Loc
     // Looked up without interpolation, as pbrt does: so the density from which directions are sampled matches the light exactly.
     if (content == Content::kProjection) request.lookup = {kernel::WRAP_CLAMP, kernel::FILTER_POINT};
     if (content == Content::kEnvironment) request.lookup = {kernel::WRAP_OCTAHEDRAL, kernel::FILTER_POINT};
+    request.encoding.emits = content == Content::kProjection || content == Content::kEnvironment;
     return load(requests_[request_image(request)]);
 }
 

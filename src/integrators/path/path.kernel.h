@@ -78,22 +78,22 @@ FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, IN(Sampler) numbers, 
         if (depth >= params[0].maxdepth) break;
         uint dimension = CAMERA_DIMENSIONS + uint(depth) * PATH_VERTEX_DIMENSIONS;
         // For the direction and for the place on a light: no term of the radiance depends on both.
-        vec4 u_vertex = sample_2d_2d_at(numbers, dimension);
+        uvec4 u_vertex = sample_bits_2d_2d_at(numbers, dimension);
         depth += 1;
 
         vec3 wo = to_local(frame, -direction);
         lights_were_sampled = !bsdf_is_specular(bsdf);
         if (lights_were_sampled && scene[0].lights.x > 0u) {
-            float u_light = 0.0f;
-            if (light_choice_needs_number()) u_light = sample_1d_at(numbers, dimension + 4u);
-            vec2 u_light_point = vec2(u_vertex.z, u_vertex.w);
+            uint u_light = 0u;
+            if (light_choice_needs_number()) u_light = sample_bits_1d_at(numbers, dimension + 4u);
+            uvec2 u_light_point = uvec2(u_vertex.z, u_vertex.w);
             radiance += throughput * direct_light(s, frame, bsdf, wo, medium, u_light, u_light_point, true, rays);
         }
 
         BsdfSample next;
         float u_lobe = 0.0f;
         if (bsdf_chooses_lobe(bsdf)) u_lobe = sample_1d_at(numbers, dimension + 5u);
-        vec2 u_direction = vec2(u_vertex.x, u_vertex.y);
+        vec2 u_direction = unit_floats(uvec2(u_vertex.x, u_vertex.y));
         if (!bsdf_sample(bsdf, wo, u_lobe, u_direction, TRANSPORT_RADIANCE, next)) break;
         throughput *= next.f * (abs(next.wi.z) / next.pdf);
         bsdf_density = next.pdf_is_proportional != 0u ? bsdf_pdf(bsdf, wo, next.wi, TRANSPORT_RADIANCE) : next.pdf;
@@ -108,6 +108,7 @@ FN vec3 path_radiance(vec3 ray_origin, vec3 ray_direction, IN(Sampler) numbers, 
         float survival = max_component(throughput) * eta_scale;
         if (!(survival > 0.0f)) break;
         if (depth > params[0].rrdepth && survival < 1.0f) {
+            survival = exact_chance(survival);
             if (sample_1d_at(numbers, dimension + 6u) >= survival) break;
             throughput = throughput / survival;
         }

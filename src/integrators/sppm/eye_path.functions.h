@@ -75,6 +75,7 @@ FN bool eye_path_scatters(IN(Surface) s, IN(Frame) frame, IN(Bsdf) bsdf, vec3 wo
     float survival = max_component(path.throughput) * path.eta_scale;
     if (!(survival > 0.0f)) return false;
     if (path.depth > params[0].rrdepth && survival < 1.0f) {
+        survival = exact_chance(survival);
         if (sample_1d_at(numbers, dimension + 6u) >= survival) return false;
         path.throughput = path.throughput / survival;
     }
@@ -140,9 +141,9 @@ FN void follow_eye_path(IN(Sampler) numbers, bool from_camera, INOUT(EyePath) pa
         }
         if (action == VISIBLE_GATHER) {
             if (from_camera && params[0].direct == SPPM_DIRECT_NEE && scene[0].lights.x > 0u) {
-                float u_light = 0.0f;
-                if (light_choice_needs_number()) u_light = sample_1d_at(numbers, dimension);
-                vec2 u_point = sample_2d_at(numbers, dimension + 1u);
+                uint u_light = 0u;
+                if (light_choice_needs_number()) u_light = sample_bits_1d_at(numbers, dimension);
+                uvec2 u_point = sample_bits_2d_at(numbers, dimension + 1u);
                 path.radiance +=
                     path.throughput * direct_light(shaded, frame, bsdf, wo, path.medium, u_light, u_point, false, rays);
             }

@@ -32,11 +32,11 @@ KERNEL(sppm_photons) {
     uint path = pass.photons.x + index;
     // Paths of one pass are a stratified set: the path is the sample, the pass takes the pixel's place.
     Sampler numbers = sampler_begin(pass.photons.z, path, pass.photons.w ^ PHOTON_STREAM, pass.counts.y);
-    float u_choice = 0.0f;
-    if (scene[0].lights.x > 1u) u_choice = sample_1d_at(numbers, 0u);
+    uint u_choice = 0u;
+    if (scene[0].lights.x > 1u) u_choice = sample_bits_1d_at(numbers, 0u);
+    uvec2 u_direction = sample_bits_2d_at(numbers, 4u);
     Emission start;
-    if (!emit_photon(u_choice, sample_1d_at(numbers, 1u), sample_2d_at(numbers, 2u), sample_2d_at(numbers, 4u), start))
-        return;
+    if (!emit_photon(u_choice, sample_1d_at(numbers, 1u), sample_2d_at(numbers, 2u), u_direction, start)) return;
     vec3 origin = start.origin;
     vec3 direction = start.direction;
     vec3 power = start.power / float(pass.counts.x);
@@ -94,6 +94,7 @@ KERNEL(sppm_photons) {
         // Photons keep about the power that they had: few, bright ones would be noise.
         float survival = after / before;
         if (survival < 1.0f) {
+            survival = exact_chance(survival);
             if (sample_1d_at(numbers, dimension + 3u) >= survival) break;
             power = power / survival;
         }

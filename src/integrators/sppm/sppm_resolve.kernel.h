@@ -45,8 +45,8 @@ KERNEL(sppm_resolve) {
             bias = share * vec3(biases[at]);
             statistics[at] = shrink(statistics[at], sum.w);
         }
-        film_add(pixel, film_sensor(radiance), hit.throughput.w, passes[0].photons.z);
-        film_add_bias(film_bias[index], bias * scene[0].camera.lens.w, hit.throughput.w);
+        if (film_add(pixel, film_sensor(radiance), hit.throughput.w, passes[0].photons.z))
+            film_add_bias(film_bias[index], bias * scene[0].camera.lens.w, hit.throughput.w);
     }
     if (i != count) REPORT_UNFINISHED();
     film[index] = pixel;

@@ -21,7 +21,7 @@ template <typename F>
 void set_table(FilterContext& context, F&& f) {
     set_radius(context, kernel::PIXEL_FILTER_GAUSSIAN);
     const double rx = context.record.filtering.x, ry = context.record.filtering.y;
-    std::vector<float>& distributions = context.build.scene.distributions;
+    std::vector<uint32_t>& distributions = context.build.scene.distributions;
     try {
         context.record.data.z = append_filter_table([&](double x) { return f(x, rx); }, rx,
                                                     [&](double y) { return f(y, ry); }, ry, distributions);

@@ -4,7 +4,7 @@
 
 namespace lampyris {
 
-float luminance_of(glm::vec3 rgb) { return glm::dot(rgb, glm::vec3(0.2126f, 0.7152f, 0.0722f)); }
+double luminance_of(glm::dvec3 rgb) { return glm::dot(rgb, glm::dvec3(0.2126, 0.7152, 0.0722)); }
 
 kernel::LightRecord blank_light(uint32_t kind) {
     kernel::LightRecord record{};

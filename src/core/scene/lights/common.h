@@ -7,7 +7,7 @@
 
 namespace lampyris {
 
-float luminance_of(glm::vec3 rgb);  // Rec.709
+double luminance_of(glm::dvec3 rgb);  // Rec.709
 kernel::LightRecord blank_light(uint32_t kind);
 glm::vec3 transformed_point(const glm::mat4& m, glm::vec3 p);
 // The light's intensity "I" (or "L"), times "scale".

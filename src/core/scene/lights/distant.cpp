@@ -20,8 +20,7 @@ void build(LightContext& context) {
         irradiance *= illuminance;
     record.emission = {irradiance, 0.0f};
     context.ask(kernel::EFFECT_DISTANT_LIGHTS);
-    context.build.lights.push_back(
-        {record, luminance_of(irradiance) * std::numbers::pi_v<float>, true, context.light.location});
+    context.build.lights.push_back({record, luminance_of(irradiance) * std::numbers::pi, true, context.light.location});
 }
 
 const RegisterLight distant(

@@ -31,7 +31,7 @@ void add_light(LightContext& context, kernel::LightRecord& record, glm::vec3 sca
         scale = emitted > 0.0 ? scale * float(power / emitted) : glm::vec3(0.0f);
     }
     record.emission = {scale, 0.0f};
-    context.build.lights.push_back({record, float(luminance_of(scale) * emitted), false, context.light.location});
+    context.build.lights.push_back({record, luminance_of(scale) * emitted, false, context.light.location});
 }
 
 void build_projection(LightContext& context) {
@@ -51,7 +51,7 @@ void build_projection(LightContext& context) {
     for (uint32_t j = 0; j < height; ++j)
         for (uint32_t i = 0; i < width; ++i) {
             const double px = x * (2.0 * (i + 0.5) / width - 1.0), py = y * (2.0 * (j + 0.5) / height - 1.0);
-            emitted += double(luminance_of(pixels[size_t(j) * width + i])) / std::pow(1.0 + px * px + py * py, 1.5);
+            emitted += luminance_of(pixels[size_t(j) * width + i]) / std::pow(1.0 + px * px + py * py, 1.5);
         }
     emitted *= 4.0 * x * y / (double(width) * height);
     add_light(context, record, glm::vec3(scale), emitted);
@@ -74,8 +74,7 @@ void build_goniometric(LightContext& context) {
                              "goniometric lights take square images in the equal-area octahedral mapping");
         return;
     }
-    add_light(context, record, intensity,
-              4.0 * kPi * double(luminance_of(context.build.textures.average(record.data.z))));
+    add_light(context, record, intensity, 4.0 * kPi * luminance_of(context.build.textures.average(record.data.z)));
 }
 
 const RegisterLight projection(

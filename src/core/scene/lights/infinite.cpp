@@ -6,7 +6,9 @@
 #include <fmt/format.h>
 #include <glm/glm.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace lampyris {
@@ -32,7 +34,7 @@ void build_constant(LightContext& context, float scale) {
     record.emission = {radiance, 0.0f};
     context.ask(kernel::EFFECT_ENVIRONMENT);
     context.build.infinite_lights.push_back(
-        {record, luminance_of(radiance) * 4.0f * kPi * kPi, true, context.light.location});
+        {record, luminance_of(radiance) * 4.0 * std::numbers::pi * std::numbers::pi, true, context.light.location});
 }
 
 void build_image(LightContext& context, const std::string& filename, float scale) {
@@ -55,11 +57,14 @@ void build_image(LightContext& context, const std::string& filename, float scale
     weights.reserve(pixels.size());
     for (uint32_t y = 0; y < height; ++y)
         for (uint32_t x = 0; x < width; ++x) {
-            const float luminance = std::fmax(luminance_of(pixels[size_t(y) * width + x]), 0.0f);
-            weights.push_back(luminance);
+            const double luminance = luminance_of(pixels[size_t(y) * width + x]);
+            // A weight for choosing: what is not black must have one.
+            using Limits = std::numeric_limits<float>;
+            weights.push_back(
+                luminance > 0.0 ? float(std::clamp(luminance, double(Limits::min()), double(Limits::max()))) : 0.0f);
             average += luminance;
             const float z = octahedral_z((float(x) + 0.5f) / float(width), (float(y) + 0.5f) / float(height));
-            if (z > 0.0f) falling += double(luminance) * z;
+            if (z > 0.0f) falling += luminance * double(z);
         }
     average /= double(pixels.size());
     // pbrt-v4, lights.cpp, Light::Create.
@@ -68,13 +73,14 @@ void build_image(LightContext& context, const std::string& filename, float scale
         scale = given > 0.0 ? float(double(scale) * illuminance / given) : 0.0f;
     }
     record.data.w = build.add_transform(context.light.world_from_light.matrix[0], context.light.location);
-    record.ids = {append_image_distribution(weights, width, height, build.scene.distributions), width, height, 0u};
+    record.ids = {append_image_distribution(weights, width, height, kEvenLightShare, build.scene.distributions), width,
+                  height, 0u};
     record.emission = {glm::vec3(scale), 0.0f};
     context.ask(kernel::EFFECT_ENVIRONMENT);
     context.ask(kernel::EFFECT_ENVIRONMENT_IMAGE);
     context.ask(kernel::EFFECT_IMAGES);
     build.infinite_lights.push_back(
-        {record, float(average * scale * 4.0 * std::numbers::pi * std::numbers::pi), true, context.light.location});
+        {record, average * double(scale) * 4.0 * std::numbers::pi * std::numbers::pi, true, context.light.location});
 }
 
 void build(LightContext& context) {
