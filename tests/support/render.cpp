@@ -33,6 +33,7 @@ Rendered render_description(SceneDescription description, const RenderSettings& 
     Film film(*device, built.scene, built.settings.crop);
     RenderSession session(*device, built.scene, device_scene, film, {settings.samples, {}, {}});
     session.seed = settings.seed;
+    session.eye_samples = settings.eye_samples;
     session.sampler = settings.sampler.value_or(built.settings.sampler) == "independent" ? kernel::SAMPLER_INDEPENDENT
                                                                                          : kernel::SAMPLER_SOBOL;
     session.max_slice = settings.slice;
