@@ -31,6 +31,7 @@ std::vector<Rendered> render_description(SceneDescription description, const Ren
         Film film(*device, built.scene, built.settings.crop);
         RenderSession session(*device, built.scene, device_scene, film, {settings.samples, {}, {}});
         session.seed = settings.seed + i;
+        session.eye_samples = settings.eye_samples;
         session.sampler = settings.sampler.value_or(built.settings.sampler) == "independent"
                               ? kernel::SAMPLER_INDEPENDENT
                               : kernel::SAMPLER_SOBOL;

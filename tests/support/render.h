@@ -18,6 +18,7 @@ namespace lampyris::test {
 struct RenderSettings {
     std::string backend = "cpu";
     uint32_t samples = 16;
+    uint32_t eye_samples = 1;  // RenderSession's
     uint32_t seed = 1;
     unsigned threads = 0;
     std::optional<std::array<int, 2>> resolution;

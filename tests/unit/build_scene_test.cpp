@@ -197,6 +197,39 @@ NamedMaterial "both"
               EFFECT_MIX | EFFECT_CONDUCTOR | EFFECT_ROUGH | EFFECT_ANISOTROPIC | EFFECT_COAT | EFFECT_DIELECTRIC);
 }
 
+// Photons are kept by it (visible_point.h): no less than what any place of the material has.
+TEST(BuildScene, MaterialsSayHowRoughTheyGet) {
+    const BuiltText text = build_world(std::string(R"(
+Texture "spots" "float" "checkerboard" "float tex1" 0 "float tex2" 0.01
+MakeNamedMaterial "matte" "string type" "diffuse"
+MakeNamedMaterial "mirror" "string type" "conductor"
+MakeNamedMaterial "pane" "string type" "thindielectric"
+MakeNamedMaterial "satin" "string type" "conductor" "float uroughness" 0.04 "float vroughness" 0.09
+MakeNamedMaterial "frosted" "string type" "dielectric" "float roughness" 0.2 "bool remaproughness" false
+MakeNamedMaterial "spotted" "string type" "conductor" "texture roughness" "spots"
+MakeNamedMaterial "varnished" "string type" "coatedconductor" "float conductor.roughness" 0.04 "float interface.roughness" 0.01
+MakeNamedMaterial "plastic" "string type" "coateddiffuse"
+MakeNamedMaterial "none" "string type" "mix" "string materials" [ "mirror" "matte" ] "float amount" 0
+MakeNamedMaterial "all" "string type" "mix" "string materials" [ "matte" "pane" ] "float amount" 1
+MakeNamedMaterial "some" "string type" "mix" "string materials" [ "satin" "mirror" ] "float amount" 0.99
+MakeNamedMaterial "nested" "string type" "mix" "string materials" [ "none" "some" ] "texture amount" "spots"
+MakeNamedMaterial "deep" "string type" "mix" "string materials" [ "nested" "matte" ]
+)") + [] {
+        std::string shapes;
+        for (const char* name : {"matte", "mirror", "pane", "satin", "frosted", "spotted", "varnished", "plastic",
+                                 "none", "all", "some", "nested", "deep"})
+            shapes += "NamedMaterial \"" + std::string(name) + "\"\n" + kTriangle;
+        return shapes;
+    }());
+    ASSERT_EQ(text.all_errors(), "");
+    const float diffuse = 1e30f;
+    const std::vector<float> expected{diffuse, 0.0f, 0.0f, 0.3f, 0.2f, diffuse, 0.2f,
+                                      diffuse, 0.0f, 0.0f, 0.3f, 0.3f, diffuse};
+    ASSERT_EQ(text.scene().geometries.size(), expected.size());
+    for (size_t i = 0; i < expected.size(); ++i)
+        EXPECT_FLOAT_EQ(text.scene().materials[text.scene().geometries[i].ids.x].floats2.w, expected[i]) << i;
+}
+
 TEST(BuildScene, MediaThatAbsorb) {
     const BuiltText text = build_text(R"(
 MakeNamedMedium "air" "string type" "homogeneous" "rgb sigma_a" [ 0 0 0 ] "rgb sigma_s" [ 0 0 0 ]

@@ -34,6 +34,7 @@ FN Bsdf bsdf_interface() {
     b.g = 0.0f;
     b.max_depth = 0u;
     b.samples = 1u;
+    b.walk = 0u;
     b.inner = -1.0f;
     return b;
 }

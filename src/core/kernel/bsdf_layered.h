@@ -144,7 +144,7 @@ RARE_FN vec3 layered_eval(IN(Bsdf) b, vec3 wo_any, vec3 wi_any, uint transport) 
     if (is_grazing(wo) || !(wi.z >= MIN_COSINE)) return vec3(0.0f);
     float pdf;
     vec3 surface = dielectric_eval(b.alpha, b.eta, wo, wi, transport, LOBE_BOTH_SIDES, pdf);
-    Rng rng = rng_begin(hash_direction(wo), hash_direction(wi));
+    Rng rng = rng_begin(hash_direction(wo) + b.walk, hash_direction(wi));
     vec3 sum = vec3(0.0f);
     for (uint walk = 0u; walk < b.samples; ++walk) {
         BsdfSample wos;

@@ -24,6 +24,7 @@ struct Bsdf {
     float g;          // coats: asymmetry of the medium's phase function
     uint max_depth;   // coats: most events of a random walk
     uint samples;     // coats: random walks per evaluation
+    uint walk;        // coats: which walks; 0 unless the same two directions are asked about again and again
     float inner;      // smooth clear coats over diffuse bases: inner reflectance (bsdf_clear_coat.h); else negative
 };
 

@@ -16,7 +16,7 @@ FN vec3 direct_light(IN(Surface) s, IN(Frame) frame, IN(Bsdf) bsdf, vec3 wo, uin
     if (is_black(arriving)) return vec3(0.0f);
     if (!weighted || light.is_delta != 0u) density = 0.0f;
     vec3 reflected = f * light.radiance * power_heuristic_over_pdf(light.pdf, density);
-    return HAS(EFFECT_MEDIUM) ? reflected * arriving : reflected;
+    return HAS(EFFECT_ALPHA | EFFECT_MEDIUM) ? reflected * arriving : reflected;
 }
 
 #endif

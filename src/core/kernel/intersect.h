@@ -140,27 +140,48 @@ FN bool surface_at(IN(Hit) hit, vec3 o, vec3 d, INOUT(Surface) s) {
     return true;
 }
 
-// Whether a masked surface lets this ray pass: by chance, with a number that belongs to the ray (as pbrt does).
-RARE_FN bool alpha_passes_by_chance(IN(Surface) s, vec3 o, vec3 d) {
-    TextureContext context;
-    context.position = s.position;
-    context.normal = s.ng;
-    context.uv = s.uv;
-    float alpha = surface_alpha(s.geometry, context);
-    if (alpha >= 1.0f) return false;
-    if (alpha <= 0.0f) return true;
-    uint h = hash_combine(hash_combine(floatBitsToUint(o.x), floatBitsToUint(o.y)), floatBitsToUint(o.z));
-    h = hash_combine(hash_combine(h, floatBitsToUint(d.x)), hash_combine(floatBitsToUint(d.y), floatBitsToUint(d.z)));
-    return unit_float(h) > alpha;
+// What a surface is to a ray.
+CONST uint SURFACE_STOPS = 0u;   // the ray ends here
+CONST uint SURFACE_PASSES = 1u;  // it is masked and lets this ray pass, by chance: another one might end here
+CONST uint SURFACE_ABSENT = 2u;  // it is masked, and nothing is there (alpha 0)
+
+RARE_FN float masked_opacity(IN(Surface) s) {
+    return clamp(surface_alpha(s.geometry, surface_texture_context(s)), 0.0f, 1.0f);
 }
 
-FN bool alpha_passes(IN(Surface) s, vec3 o, vec3 d) {
-    if (geometries[s.geometry].ids.z == NONE && geometries[s.geometry].alpha.x >= 1.0f) return false;
+// The share of a surface that is there: its alpha.
+FN float surface_opacity(IN(Surface) s) {
+    if (!HAS(EFFECT_ALPHA)) return 1.0f;
+    if (geometries[s.geometry].ids.z == NONE && geometries[s.geometry].alpha.x >= 1.0f) return 1.0f;
     Surface masked = s;
-    return alpha_passes_by_chance(masked, o, d);
+    return masked_opacity(masked);
+}
+
+// By chance, with a number that belongs to the ray (as pbrt does).
+RARE_FN uint masked_fate(float opacity, vec3 o, vec3 d) {
+    if (opacity <= 0.0f) return SURFACE_ABSENT;
+    uint h = hash_combine(hash_combine(floatBitsToUint(o.x), floatBitsToUint(o.y)), floatBitsToUint(o.z));
+    h = hash_combine(hash_combine(h, floatBitsToUint(d.x)), hash_combine(floatBitsToUint(d.y), floatBitsToUint(d.z)));
+    return unit_float(h) > opacity ? SURFACE_PASSES : SURFACE_STOPS;
+}
+
+FN uint surface_fate(float opacity, vec3 o, vec3 d) {
+    if (!HAS(EFFECT_ALPHA) || opacity >= 1.0f) return SURFACE_STOPS;
+    return masked_fate(opacity, o, d);
 }
 
 FN bool is_interface(IN(Surface) s) { return materials[s.material].data.x == MATERIAL_INTERFACE; }
+
+// The next surface point that the ray meets, masked ones too, which may let it pass: `fate` is one of SURFACE_*.
+FN bool intersect_next(vec3 origin, vec3 direction, OUT(Surface) s, OUT(uint) fate, INOUT(uint) rays) {
+    Hit hit;
+    rays += 1u;
+    fate = SURFACE_ABSENT;
+    if (!trace_closest(origin, direction, INFINITE_DISTANCE, hit)) return false;
+    if (!surface_at(hit, origin, direction, s)) return false;
+    fate = surface_fate(surface_opacity(s), origin, direction);
+    return true;
+}
 
 // The first surface point that the ray meets; masked surfaces are passed, interfaces are not. Directions are unit length.
 // `rays` counts the rays that were traced. `origin` is where the last of them started, `hit` what it met: surface_at(hit, origin,
@@ -172,7 +193,7 @@ FN bool intersect_scene_from(INOUT(vec3) origin, vec3 direction, OUT(Surface) s,
         if (!trace_closest(origin, direction, INFINITE_DISTANCE, hit)) return false;
         if (!surface_at(hit, origin, direction, s)) return false;
         s.distance += passed;
-        if (!(HAS(EFFECT_ALPHA) && alpha_passes(s, origin, direction))) return true;
+        if (surface_fate(surface_opacity(s), origin, direction) == SURFACE_STOPS) return true;
         passed = s.distance;
         origin = origin_beyond(s.position, s.way, direction);
     }
@@ -186,12 +207,16 @@ FN bool intersect_scene(vec3 origin, vec3 direction, OUT(Surface) s, INOUT(uint)
     return intersect_scene_from(o, direction, s, hit, rays);
 }
 
+// In place of the medium in which a shadow ray starts: media on the way do not count.
+CONST uint MEDIA_IGNORED = 0xffffffffu;
+
 // shadow_ray where surfaces may let the ray pass: o is outside of the first one's rounding error.
 RARE_FN bool shadow_ray_through(vec3 start_o, vec3 direction, float distance, float start_t_max, uint start,
                                 OUT(vec3) transmittance, INOUT(uint) rays) {
     transmittance = vec3(1.0f);
     vec3 o = start_o;
     float t_max = start_t_max;
+    bool absorbs = HAS(EFFECT_MEDIUM) && start != MEDIA_IGNORED;
     uint medium = start;
     float left = distance;  // to the light itself, of which t_max ends short
     for (uint i = 0u; i < MAX_PASSED_SURFACES; ++i) {
@@ -200,13 +225,19 @@ RARE_FN bool shadow_ray_through(vec3 start_o, vec3 direction, float distance, fl
         rays += 1u;
         bool found = t_max > 0.0f && trace_closest(o, direction, t_max, hit) && surface_at(hit, o, direction, s);
         if (!found) {
-            if (HAS(EFFECT_MEDIUM)) transmittance *= medium_transmittance(medium, max(left, 0.0f));
+            if (absorbs) transmittance *= medium_transmittance(medium, max(left, 0.0f));
             return false;
         }
-        bool passes = HAS(EFFECT_ALPHA) && alpha_passes(s, o, direction);
-        bool crosses = HAS(EFFECT_INTERFACE) && !passes && is_interface(s);
-        if (!passes && !crosses) return true;
-        if (HAS(EFFECT_MEDIUM)) {
+        float opacity = surface_opacity(s);
+        bool crosses = false;
+        if (HAS(EFFECT_INTERFACE) && is_interface(s)) {
+            crosses = surface_fate(opacity, o, direction) == SURFACE_STOPS;
+        } else {
+            if (opacity >= 1.0f) return true;
+            // No choice by chance: it would be the same one whenever the same ray is asked about.
+            transmittance *= 1.0f - opacity;
+        }
+        if (absorbs) {
             transmittance *= medium_transmittance(medium, s.distance);
             if (crosses) medium = medium_behind(s, direction, medium);
         }
@@ -221,7 +252,7 @@ RARE_FN bool shadow_ray_through(vec3 start_o, vec3 direction, float distance, fl
 }
 
 // Whether anything opaque lies between o, outside of a surface, and a point `distance` away along the unit direction. If not,
-// `transmittance` is what the media on the way leave, `start` being the one in which the ray starts.
+// `transmittance` is what masked surfaces and media on the way leave, `start` being the one in which the ray starts.
 FN bool shadow_ray(vec3 o, vec3 direction, float distance, uint start, OUT(vec3) transmittance, INOUT(uint) rays) {
     float t_max = distance >= INFINITE_DISTANCE ? INFINITE_DISTANCE : distance * (1.0f - SHADOW_EPSILON);
     if (HAS(EFFECT_ALPHA | EFFECT_INTERFACE) && RARELY(CALLED_FOR(EFFECT_ALPHA | EFFECT_INTERFACE))) {
@@ -233,14 +264,16 @@ FN bool shadow_ray(vec3 o, vec3 direction, float distance, uint start, OUT(vec3)
         return occluded;
     }
     rays += 1u;
-    transmittance = HAS(EFFECT_MEDIUM) ? medium_transmittance(start, distance) : vec3(1.0f);
+    transmittance = vec3(1.0f);
+    if (HAS(EFFECT_MEDIUM) && start != MEDIA_IGNORED) transmittance = medium_transmittance(start, distance);
     return trace_occluded(o, direction, t_max);
 }
 
-FN bool scene_occluded(vec3 position, vec3 error, vec3 ng, vec3 direction, float distance, INOUT(uint) rays) {
+// How much of a point `distance` away along the unit direction a surface point sees, whatever media lie between.
+FN float scene_openness(vec3 position, vec3 error, vec3 ng, vec3 direction, float distance, INOUT(uint) rays) {
     vec3 transmittance;
     vec3 o = offset_origin(position, error, ng, direction);
-    return shadow_ray(o, direction, distance, MEDIUM_VACUUM, transmittance, rays);
+    return shadow_ray(o, direction, distance, MEDIA_IGNORED, transmittance, rays) ? 0.0f : transmittance.x;
 }
 
 // The share of light that comes from a point `distance` away along the unit direction to s, which was reached through `medium`.

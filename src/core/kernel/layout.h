@@ -98,8 +98,9 @@ struct MaterialRecord {
     vec4 color2;      // coats: albedo of the medium between the layers
     vec4
         floats;  // roughness u, v (of the base for coatedconductor, of the coat for coateddiffuse); z: eta (dielectrics, coats); w: g
-    vec4 floats2;  // x: thickness of the coat; y, z: roughness u, v of coatedconductor's coat; w: unused
-    uvec4 extra;   // coats: maxdepth, nsamples; mix: the two materials (x, y), amount texture (z; NONE: floats.x)
+    vec4
+        floats2;  // x: thickness of the coat; y, z: roughness u, v of coatedconductor's coat; w: GGX alpha of its roughest lobe anywhere (1e30: diffuse)
+    uvec4 extra;  // coats: maxdepth, nsamples; mix: the two materials (x, y), amount texture (z; NONE: floats.x)
 };
 
 // ---- Media -----------------------------------------------------------------------------------------------------------

@@ -42,8 +42,8 @@ FN PhotonRecord photon_pack(vec3 position, vec3 direction, vec3 power, uint key)
         uvec4(direction_pack(direction), floatBitsToUint(power.x), floatBitsToUint(power.y), floatBitsToUint(power.z));
     return p;
 }
-// Unique as long as bounce < bounces and paths * bounces < 2^32.
-FN uint photon_key(uint path, uint bounce, uint bounces) { return path * bounces + bounce; }
+// Of photon number `number` of a path: unique as long as (number + 1) * paths <= 2^32.
+FN uint photon_key(uint path, uint number, uint paths) { return number * paths + path; }
 FN vec3 place_position(uvec4 place) {
     return vec3(uintBitsToFloat(place.x), uintBitsToFloat(place.y), uintBitsToFloat(place.z));
 }

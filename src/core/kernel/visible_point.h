@@ -24,6 +24,12 @@ FN uint visible_action(IN(Bsdf) b, float roughness) {
     return VISIBLE_FOLLOW;
 }
 
+// Whether an eye path may gather somewhere on a material. Photons are kept by this, not by what the photon's own visit shows of it:
+// which of a mix it met, or how rough a texture is a radius farther, is drawn again, or differs, where the eye path arrives.
+FN bool material_may_gather(uint material, float roughness) {
+    return materials[material].floats2.w >= max(roughness, GGX_SMOOTH);
+}
+
 // Whether light that arrives on one side leaves on the other.
 FN bool bsdf_transmits(IN(Bsdf) b) {
     return (HAS(EFFECT_DIFFUSE_TRANSMISSION) && b.kind == MATERIAL_DIFFUSE_TRANSMISSION) ||

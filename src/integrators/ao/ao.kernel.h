@@ -24,7 +24,7 @@ KERNEL(ao) {
             for (int k = 0; k < params[0].rays; ++k) {
                 vec3 direction = to_world(frame, sample_cosine_hemisphere(sample_2d(camera.numbers)));
                 float limit = min(params[0].distance, INFINITE_DISTANCE);
-                if (!scene_occluded(s.position, s.error, s.ng, direction, limit, rays)) seen += 1.0f;
+                seen += scene_openness(s.position, s.error, s.ng, direction, limit, rays);
             }
             seen = seen / float(params[0].rays);
             pixel.normal += vec4(s.ns.x, s.ns.y, s.ns.z, 0.0f);

@@ -64,15 +64,15 @@ class PhotonMapRendering {
         if (params.gather == 0) {
             const uint32_t keep =
                 params.direct == kernel::SPPM_DIRECT_PHOTONS ? kernel::SPPM_KEEP_ALL : kernel::SPPM_KEEP_BOUNCED;
-            map_.emplace(session, keep, uint32_t(params.photons), bounces(), 0, consumer(hits_));
+            map_.emplace(session, keep, uint32_t(params.photons), 0, consumer(hits_));
             return;
         }
         rays_ = device_.compile(kRays, effects);
         add_ = device_.compile(kAdd, 0);
         ends_.emplace(device_, pixels_);
-        map_.emplace(session, kernel::SPPM_KEEP_ALL, uint32_t(params.photons), bounces(), 0, consumer(*ends_));
+        map_.emplace(session, kernel::SPPM_KEEP_ALL, uint32_t(params.photons), 0, consumer(*ends_));
         if (effects & kSpecularEffects)
-            caustics_.emplace(session, kernel::SPPM_KEEP_CAUSTIC, caustic_paths(), bounces(), 1, consumer(hits_));
+            caustics_.emplace(session, kernel::SPPM_KEEP_CAUSTIC, caustic_paths(), 1, consumer(hits_));
     }
 
     void render() {
@@ -85,15 +85,15 @@ class PhotonMapRendering {
     }
 
  private:
-    uint32_t bounces() const { return uint32_t(params_.maxdepth) + 1; }
     uint32_t caustic_paths() const {
         return uint32_t(params_.causticphotons > 0 ? params_.causticphotons : params_.photons);
     }
     uint32_t gather_rays() const { return uint32_t(params_.gather); }
 
     void check() const {
-        // Keys tell the photons of a path apart.
-        const uint64_t keys = uint64_t(std::max(uint32_t(params_.photons), caustic_paths())) * bounces();
+        // Keys tell the photons of a path apart: one a bounce, and those at masks, which StoredPhotons counts.
+        const uint64_t bounces = uint64_t(params_.maxdepth) + 1;
+        const uint64_t keys = std::max(uint32_t(params_.photons), caustic_paths()) * bounces;
         if (keys > std::numeric_limits<uint32_t>::max())
             throw InputError(
                 fmt::format("error: photons * (maxdepth + 1) = {} is more than 2^32; take fewer photons, or a smaller "
@@ -157,10 +157,11 @@ class PhotonMapRendering {
         record.photons.z = uint32_t(pass);
         record.counts.z = 1;
         record.scale.x = 1.0f;
+        record.keep.y = 1;
         pass_buffer_->upload(&record, sizeof record);
         set_window(uint32_t(pass));
         run(sppm_files::kEye, *eye_, "eye_pass",
-            std::array{window_, hit_params_, session_.film.buffer(), hits_.hits, hits_.queries});
+            std::array{window_, hit_params_, session_.film.buffer(), hits_.hits, hits_.queries, pass_buffer_});
         give_radii(hits_, hit_params_, "eye_pass");
         if (params_.gather == 0) {
             map_->gather(hits_.queries, pixels_, hit_radius_, pass);

@@ -46,7 +46,7 @@ KERNEL(photon_map_rays) {
         if (eye_path_scatters(s, frame, bsdf, wo, numbers, EYE_LOBES_OTHER, path)) {
             FilmPixel pixel = film[index];
             uint rays = 0u;
-            follow_eye_path(numbers, false, path, pixel, end, query, rays);
+            follow_eye_path(numbers, false, EYE_BRANCH_CHANCE, path, pixel, end, query, rays);
             end.throughput = vec4(path.throughput.x, path.throughput.y, path.throughput.z, 1.0f);
             film[index].counts.y += rays;
         }

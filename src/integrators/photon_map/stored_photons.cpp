@@ -1,6 +1,9 @@
 #include "integrators/photon_map/stored_photons.h"
 
+#include "core/error.h"
 #include "integrators/sppm/photon_host.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -8,7 +11,7 @@
 
 namespace lampyris {
 
-StoredPhotons::StoredPhotons(RenderSession& session, uint32_t keep, uint32_t paths, uint32_t bounces, uint32_t stream,
+StoredPhotons::StoredPhotons(RenderSession& session, uint32_t keep, uint32_t paths, uint32_t stream,
                              const PhotonConsumer& consumer)
     : session_(session),
       paths_(paths),
@@ -23,7 +26,7 @@ StoredPhotons::StoredPhotons(RenderSession& session, uint32_t keep, uint32_t pat
     pass_.low = glm::vec4(glm::vec3(bounds) - extent, 0.0f);
     pass_.high = glm::vec4(glm::vec3(bounds) + extent, 0.0f);
     pass_.photons = {0, 0, stream, session.seed};
-    pass_.counts = {paths, session.sampler, 1, bounces};
+    pass_.counts = {paths, session.sampler, 1, paths};
     pass_.keep.x = keep;
 }
 
@@ -44,6 +47,11 @@ void StoredPhotons::trace(const BufferHandle& parameters) {
         const SppmCounters found = download_sppm_counters(*counters);
         stored_ = found[kernel::SPPM_STORED];
         session_.photons.rays += found[kernel::SPPM_RAYS];
+        if (const uint32_t most = found[kernel::SPPM_MOST_KEPT]; !keys_reach(paths_, most))
+            throw InputError(fmt::format(
+                "error: a path leaves {} photons at masked surfaces and others, and {} times as many as there "
+                "are paths ({}) is more than 2^32; take fewer photons",
+                most, most, paths_));
         if (stored_ <= capacity) break;
         capacity = stored_;
     }

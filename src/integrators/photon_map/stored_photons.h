@@ -12,10 +12,10 @@ namespace lampyris {
 class StoredPhotons {
  public:
     // `keep`: kernel::SPPM_KEEP_*. `stream` tells apart the random numbers of maps. Compiles what building and gathering need.
-    StoredPhotons(RenderSession& session, uint32_t keep, uint32_t paths, uint32_t bounces, uint32_t stream,
+    StoredPhotons(RenderSession& session, uint32_t keep, uint32_t paths, uint32_t stream,
                   const PhotonConsumer& consumer);
 
-    // Traces the paths, once. `parameters`: kernel SppmParams, of sppm's kernels.
+    // Traces the paths, once. `parameters`: kernel SppmParams, of sppm's kernels. Throws InputError where keys do not reach.
     void trace(const BufferHandle& parameters);
 
     // Hands the consumer what `count` queries find, none with a radius above `radius`. Builds the structure where it is not built or

@@ -15,8 +15,10 @@ class Ppm : public Integrator {
     std::string unseen_error(uint32_t eye_samples) const override {
         constexpr uint32_t kEnough = 16;  // what is left of a pixel's inside is then small beside the rest, as a rule
         if (eye_samples >= kEnough) return {};
-        return fmt::format("all passes share {} of a pixel: edges and reflections between are not seen",
-                           eye_samples > 1 ? fmt::format("{} eye samples", eye_samples) : "one eye sample");
+        return fmt::format(
+            "all passes share {} of a pixel: edges and reflections between are not seen, nor what else of "
+            "masks, mixes and lobes their ways might have met",
+            eye_samples > 1 ? fmt::format("{} eye samples", eye_samples) : "one eye sample");
     }
     void render(RenderSession& session) override {
         render_photon_mapping(session, params, std::max(session.eye_samples, 1u));

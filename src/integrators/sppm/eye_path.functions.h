@@ -16,6 +16,13 @@ CONST uint SPPM_VERTEX_DIMENSIONS = 8u;
 CONST uint EYE_LOBES_ALL = 0u;
 CONST uint EYE_LOBES_SPECULAR = 1u;  // of a surface the rest of which is gathered
 CONST uint EYE_LOBES_OTHER = 2u;  // of a hit point, whose specular lobes, if any, are followed as part of the eye path
+CONST uint EYE_LOBES_COAT =
+    3u;  // the coat's reflection of a surface the rest of which is gathered, without a choice by chance
+
+// What a path does at the first smooth coat over something rough.
+CONST uint EYE_BRANCH_CHANCE = 0u;   // one of the two
+CONST uint EYE_BRANCH_GATHERS = 1u;  // is gathered there
+CONST uint EYE_BRANCH_FOLLOWS = 2u;  // follows the coat's reflection, and has nothing but what that brings
 
 struct EyePath {
     vec3 start;
@@ -60,13 +67,15 @@ FN bool eye_path_scatters(IN(Surface) s, IN(Frame) frame, IN(Bsdf) bsdf, vec3 wo
     uint dimension = eye_path_dimension(path);
     BsdfSample next;
     float u_lobe = 0.0f;
-    if (bsdf_chooses_lobe(bsdf)) u_lobe = sample_1d_at(numbers, dimension + 3u);
+    // The coat's reflection is the lobe of the lowest numbers.
+    if (bsdf_chooses_lobe(bsdf) && lobes != EYE_LOBES_COAT) u_lobe = sample_1d_at(numbers, dimension + 3u);
     vec2 u_direction = sample_2d_at(numbers, dimension + 4u);
     if (!bsdf_sample(bsdf, wo, u_lobe, u_direction, TRANSPORT_RADIANCE, next)) return false;
     bool specular = (next.lobe & LOBE_SPECULAR) != 0u;
-    if (lobes == EYE_LOBES_SPECULAR && !specular) return false;
+    if ((lobes == EYE_LOBES_SPECULAR || lobes == EYE_LOBES_COAT) && !specular) return false;
     if (lobes == EYE_LOBES_OTHER && specular) return false;
-    path.throughput *= next.f * (abs(next.wi.z) / next.pdf);
+    float density = lobes == EYE_LOBES_COAT ? 1.0f : next.pdf;
+    path.throughput *= next.f * (abs(next.wi.z) / density);
     if ((next.lobe & LOBE_TRANSMISSION) != 0u) path.eta_scale *= sqr(next.eta);
     path.direction = unit(to_world(frame, next.wi));
     path.origin = offset_origin(s.position, s.error, s.ng, path.direction);
@@ -85,9 +94,11 @@ FN bool eye_path_scatters(IN(Surface) s, IN(Frame) frame, IN(Bsdf) bsdf, vec3 wo
 // Follows the path. Where it ends at a hit point, `place` is that and the radius of the first pass; else the radius is negative.
 // `from_camera`: what emits on the way counts in full, a light is sampled at the hit point (direct=nee), and the first surface's
 // features go to `pixel`. A path from another hit point (final gathering) does without: there these are counted already.
-FN void follow_eye_path(IN(Sampler) numbers, bool from_camera, INOUT(EyePath) path, INOUT(FilmPixel) pixel,
-                        INOUT(SppmHit) hit, OUT(vec4) place, INOUT(uint) rays) {
-    bool first = from_camera;
+// `branch_asked`: EYE_BRANCH_*.
+FN void follow_eye_path(IN(Sampler) numbers, bool from_camera, uint branch_asked, INOUT(EyePath) path,
+                        INOUT(FilmPixel) pixel, INOUT(SppmHit) hit, OUT(vec4) place, INOUT(uint) rays) {
+    uint branch = branch_asked;
+    bool first = from_camera && branch != EYE_BRANCH_FOLLOWS;
     uint passed = 0u;
     uint vertices = uint(params[0].maxdepth) + MAX_PASSED_SURFACES + 1u;  // more than a path has
     uint vertex = 0u;
@@ -134,12 +145,18 @@ FN void follow_eye_path(IN(Sampler) numbers, bool from_camera, INOUT(EyePath) pa
 
         vec3 wo = to_local(frame, -path.direction);
         uint action = visible_action(bsdf, params[0].glossy);
-        bool split = action == VISIBLE_SPLIT;
-        if (split) {
+        uint lobes = EYE_LOBES_ALL;
+        if (action == VISIBLE_SPLIT && branch == EYE_BRANCH_CHANCE) {
             action = sample_1d_at(numbers, dimension + 7u) < 0.5f ? VISIBLE_GATHER : VISIBLE_FOLLOW;
             path.throughput = 2.0f * path.throughput;
+            lobes = EYE_LOBES_SPECULAR;  // the rest is gathered, half of the time
+        } else if (action == VISIBLE_SPLIT) {
+            action = branch == EYE_BRANCH_GATHERS ? VISIBLE_GATHER : VISIBLE_FOLLOW;
+            if (action == VISIBLE_FOLLOW) path.radiance = vec3(0.0f);  // the other branch has it
+            lobes = EYE_LOBES_COAT;
+            branch = EYE_BRANCH_CHANCE;
         }
-        if (action == VISIBLE_GATHER) {
+        if (action == VISIBLE_GATHER && branch != EYE_BRANCH_FOLLOWS) {
             if (from_camera && params[0].direct == SPPM_DIRECT_NEE && scene[0].lights.x > 0u) {
                 uint u_light = 0u;
                 if (light_choice_needs_number()) u_light = sample_bits_1d_at(numbers, dimension);
@@ -160,11 +177,11 @@ FN void follow_eye_path(IN(Sampler) numbers, bool from_camera, INOUT(EyePath) pa
             place = vec4(s.position.x, s.position.y, s.position.z, first_radius);
             break;
         }
-        // The rest of a split surface is gathered, half of the time.
-        uint lobes = split ? EYE_LOBES_SPECULAR : EYE_LOBES_ALL;
+        if (action == VISIBLE_GATHER) break;
         if (eye_path_scatters(s, frame, bsdf, wo, numbers, lobes, path)) vertex = uint(path.depth) + passed;
     }
-    if (vertex != vertices) REPORT_UNFINISHED();  // the driver ended the loop
+    if (vertex != vertices) REPORT_UNFINISHED();                   // the driver ended the loop
+    if (branch == EYE_BRANCH_FOLLOWS) path.radiance = vec3(0.0f);  // it met no coat
     hit.radiance.x = path.radiance.x;
     hit.radiance.y = path.radiance.y;
     hit.radiance.z = path.radiance.z;

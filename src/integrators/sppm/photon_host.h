@@ -15,6 +15,7 @@ namespace sppm_files {
 inline constexpr const char* kEye = "integrators/sppm/sppm_eye.kernel.h";
 inline constexpr const char* kRadius = "integrators/sppm/sppm_radius.kernel.h";
 inline constexpr const char* kPhotons = "integrators/sppm/sppm_photons.kernel.h";
+inline constexpr const char* kDirect = "integrators/ppm/ppm_direct.kernel.h";
 inline constexpr const char* kResolve = "integrators/sppm/sppm_resolve.kernel.h";
 inline constexpr const char* kConsumer = "integrators/sppm/sppm.consumer.h";
 }  // namespace sppm_files
@@ -26,6 +27,9 @@ void run_in_phase(RenderSession& session, const char* file, const Kernel& kernel
                   std::span<const BufferHandle> buffers, uint32_t count);
 
 SppmCounters download_sppm_counters(const Buffer& counters);
+
+// Whether keys tell all photons apart (photon_key), where no path leaves more than `most`.
+constexpr bool keys_reach(uint32_t paths, uint32_t most) { return uint64_t(paths) * most <= uint64_t(1) << 32; }
 
 // The box of the hit points, which sppm_radius found.
 void unpack_box(const SppmCounters& counters, kernel::SppmPass& pass);

@@ -21,18 +21,19 @@ class PhotonMapping {
           device_(session.device),
           params_(params),
           fixed_(eye_samples > 0),
-          points_(std::max(eye_samples, 1u)),
+          // A path that is followed once takes both ways at a coat.
+          branches_(fixed_ && (session.scene.effects.mask() & kernel::EFFECT_COAT) ? 2 : 1),
+          points_(std::max(eye_samples, 1u) * branches_),
           pixels_(session.film.pixel_count()) {
-        const uint64_t points = uint64_t(points_) * pixels_;
+        const uint64_t points = uint64_t(std::max(eye_samples, 1u)) * branches_ * pixels_;
         if (points > std::numeric_limits<uint32_t>::max())
             throw InputError(fmt::format("error: {} hit points are more than 2^32; take fewer --spp", points));
         paths_ = params.photonsperiteration > 0 ? uint32_t(params.photonsperiteration)
                                                 : session.scene.width() * session.scene.height();
         capacity_ = params.store > 0 ? uint32_t(params.store)
                                      : uint32_t(std::clamp<uint64_t>(4 * uint64_t(paths_), 65536, 1u << 30));
-        // Keys tell bounces apart; a part has so few paths that they do not overflow.
-        bounces_ = uint32_t(params.maxdepth) + 1;
-        part_ = std::max(1u, std::min(paths_, std::numeric_limits<uint32_t>::max() / bounces_));
+        // A part has so few paths that keys tell a photon for each of their bounces apart.
+        part_ = std::max(1u, std::min(paths_, std::numeric_limits<uint32_t>::max() / (uint32_t(params.maxdepth) + 1)));
         const uint32_t effects = session.scene.effects.mask();
         eye_ = device_.compile(sppm_files::kEye, effects);
         radius_ = device_.compile(sppm_files::kRadius, 0);
@@ -40,6 +41,13 @@ class PhotonMapping {
         resolve_ = device_.compile(sppm_files::kResolve, effects);
         window_ = device_.create_buffer(sizeof(kernel::FilmWindow), "film window");
         params_buffer_ = argument_buffer(device_, params_, "parameters");
+        SppmParams eye_params = params_;
+        if (samples_lights_each_pass()) {
+            eye_params.direct = kernel::SPPM_DIRECT_PHOTONS;  // eye paths leave it to ppm_direct
+            direct_ = device_.compile(sppm_files::kDirect, effects);
+            ways_ = device_.create_buffer(points * sizeof(glm::vec4), "radiance on the way to hit points");
+        }
+        eye_params_buffer_ = argument_buffer(device_, eye_params, "parameters of eye paths");
         pass_buffer_ = device_.create_buffer(sizeof(kernel::SppmPass), "pass");
         counters_ = device_.create_buffer(sizeof(SppmCounters), "counters");
         hits_ = device_.create_buffer(points * sizeof(kernel::SppmHit), "hit points");
@@ -75,14 +83,18 @@ class PhotonMapping {
  private:
     void one_pass(uint64_t pass) {
         pass_.photons = {0, capacity_, uint32_t(pass), session_.seed};
-        pass_.counts = {paths_, session_.sampler, points_, bounces_};
+        pass_.counts = {paths_, session_.sampler, points_, 0};
         pass_.keep.x =
             params_.direct == kernel::SPPM_DIRECT_PHOTONS ? kernel::SPPM_KEEP_ALL : kernel::SPPM_KEEP_BOUNCED;
+        pass_.keep.y = branches_;
         pass_.scale.x = float(memoryless_scale(pass, double(params_.alpha)));
         const SppmCounters zero{};
         counters_->upload(&zero, sizeof zero);
         pass_buffer_->upload(&pass_, sizeof pass_);
         if (!fixed_ || !followed_) follow_eye_paths(pass);
+        if (samples_lights_each_pass())
+            run(sppm_files::kDirect, *direct_, "eye_pass",
+                std::array{window_, pass_buffer_, session_.film.buffer(), hits_, queries_, ways_}, pixels_);
         run(sppm_files::kRadius, *radius_, "eye_pass",
             std::array{params_buffer_, pass_buffer_, hits_, queries_, statistics_, gathered_, counters_, biases_},
             points_ * pixels_);
@@ -98,11 +110,12 @@ class PhotonMapping {
     }
 
     void follow_eye_paths(uint64_t pass) {
-        const kernel::FilmWindow window{session_.film.window(),
-                                        {fixed_ ? 0u : uint32_t(pass), points_, session_.seed, session_.sampler}};
+        const kernel::FilmWindow window{
+            session_.film.window(),
+            {fixed_ ? 0u : uint32_t(pass), points_ / branches_, session_.seed, session_.sampler}};
         window_->upload(&window, sizeof window);
         run(sppm_files::kEye, *eye_, "eye_pass",
-            std::array{window_, params_buffer_, session_.film.buffer(), hits_, queries_}, pixels_);
+            std::array{window_, eye_params_buffer_, session_.film.buffer(), hits_, queries_, pass_buffer_}, pixels_);
         followed_ = true;
     }
 
@@ -112,16 +125,22 @@ class PhotonMapping {
             const uint32_t count = std::min(part_, paths_ - first);
             pass_.photons.x = first;
             pass_.photons.y = capacity_;
+            pass_.counts.w = count;
             pass_buffer_->upload(&pass_, sizeof pass_);
-            const uint32_t none[2] = {0, 0};
+            const uint32_t none[3] = {0, 0, 0};
             counters_->upload(none, sizeof none);
             run(sppm_files::kPhotons, *photons_, "photon_tracing",
                 std::array{pass_buffer_, params_buffer_, store_, counters_}, count);
             const SppmCounters counters = download_counters();
             const uint32_t stored = counters[kernel::SPPM_STORED];
             session_.photons.rays += counters[kernel::SPPM_RAYS];
+            // Where this part's photons find no room, or no keys, it is traced again.
+            if (!keys_reach(count, counters[kernel::SPPM_MOST_KEPT])) {
+                part_ = std::max(1u, count / 2);
+                continue;
+            }
             if (stored > capacity_) {
-                make_room(count, stored);  // and trace this part again
+                make_room(count, stored);
                 continue;
             }
             session_.photons.emitted += count;
@@ -163,6 +182,7 @@ class PhotonMapping {
         run_in_phase(session_, file, kernel, phase, buffers, count);
     }
 
+    bool samples_lights_each_pass() const { return fixed_ && params_.direct == kernel::SPPM_DIRECT_NEE; }
     SppmCounters download_counters() const { return download_sppm_counters(*counters_); }
 
     void finish() {
@@ -178,15 +198,16 @@ class PhotonMapping {
     Device& device_;
     const SppmParams params_;
     const bool fixed_;
-    const uint32_t points_;  // hit points a pixel
+    const uint32_t branches_;  // hit points of an eye path
+    const uint32_t points_;    // hit points a pixel
     const uint32_t pixels_;
-    uint32_t paths_ = 0, part_ = 0, bounces_ = 0, capacity_ = 0;
+    uint32_t paths_ = 0, part_ = 0, capacity_ = 0;
     bool followed_ = false;
     float largest_radius_ = 0;
     kernel::SppmPass pass_{};
-    KernelHandle eye_, radius_, photons_, resolve_;
-    BufferHandle window_, params_buffer_, pass_buffer_, counters_, hits_, queries_, gathered_, statistics_, biases_,
-        film_bias_, store_;
+    KernelHandle eye_, direct_, radius_, photons_, resolve_;
+    BufferHandle window_, params_buffer_, eye_params_buffer_, pass_buffer_, counters_, hits_, queries_, ways_,
+        gathered_, statistics_, biases_, film_bias_, store_;
     std::unique_ptr<PhotonMap> map_;
     PhotonConsumer consumer_;
 };

@@ -14,20 +14,21 @@ struct SppmHit {
 
 struct SppmPass {
     uvec4 photons;  // first path of this part, photons that fit, pass, seed
-    uvec4 counts;   // paths emitted in the pass, sampler kind, hit points a pixel, bounces that keys tell apart
+    uvec4 counts;   // paths emitted in the pass, sampler kind, hit points a pixel, paths in a build of the map (keys)
     vec4 low;       // photons are kept within this box
     vec4 high;
     vec4 scale;  // x: squared radius over that of the first pass, where passes have the same one (memoryless)
-    uvec4 keep;  // x: which photons are kept: SPPM_KEEP_*
+    uvec4 keep;  // x: which photons are kept: SPPM_KEEP_*; y: branches, hit points of one eye path
 };
 
 // Words of `counters`.
 CONST uint SPPM_STORED = 0u;  // photons, also those that did not fit
 CONST uint SPPM_RAYS = 1u;
+CONST uint SPPM_MOST_KEPT = 2u;  // photons of one path; counted where masks let a path leave more than it has vertices
 // The box of the hit points, padded by their radii: of the lower corner the complement, so that zero is less than anything.
-CONST uint SPPM_LOW = 2u;
-CONST uint SPPM_HIGH = 5u;
-CONST uint SPPM_RADIUS = 8u;  // the largest (bits)
+CONST uint SPPM_LOW = 3u;
+CONST uint SPPM_HIGH = 6u;
+CONST uint SPPM_RADIUS = 9u;  // the largest (bits)
 CONST uint SPPM_COUNTERS = 12u;
 
 // Photons that arrive flatter than this count as if they did not: |wi.Ns| / |wi.Ng| has no bound.

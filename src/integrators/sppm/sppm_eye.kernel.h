@@ -10,6 +10,7 @@ BUFFER_RO(0, FilmWindow, window)
 BUFFER_RW(2, FilmPixel, film)
 BUFFER_RW(3, SppmHit, hits)
 BUFFER_RW(4, vec4, queries)
+BUFFER_RO(5, SppmPass, passes)
 
 KERNEL(sppm_eye) {
     FilmWindow w = window[0];
@@ -17,10 +18,12 @@ KERNEL(sppm_eye) {
     uint place = local.y * w.pixels.z + local.x;
     FilmPixel pixel = film[place];
     uint pixels = w.pixels.z * w.pixels.w;
+    uint count = passes[0].counts.z;
+    uint branches = passes[0].keep.y;
     uint i = 0u;
-    for (; i < w.samples.y; ++i) {
+    for (; i < count; ++i) {
         uint at = i * pixels + place;
-        CameraSample camera = camera_sample(w, local, i);
+        CameraSample camera = camera_sample(w, local, i / branches);
         SppmHit hit;
         hit.origin = uvec4(0u);
         hit.direction = uvec4(0u);
@@ -29,12 +32,14 @@ KERNEL(sppm_eye) {
         vec4 query;
         uint rays = 0u;
         EyePath path = eye_path_begin(camera.ray.origin, camera.ray.direction, camera_medium());
-        follow_eye_path(camera.numbers, true, path, pixel, hit, query, rays);
+        uint branch = EYE_BRANCH_CHANCE;
+        if (branches == 2u) branch = i % 2u == 0u ? EYE_BRANCH_GATHERS : EYE_BRANCH_FOLLOWS;
+        follow_eye_path(camera.numbers, true, branch, path, pixel, hit, query, rays);
         hit.throughput = vec4(path.throughput.x, path.throughput.y, path.throughput.z, camera.weight);
         pixel.counts.y += rays;
         hits[at] = hit;
         queries[at] = query;
     }
-    if (i != w.samples.y) REPORT_UNFINISHED();
+    if (i != count) REPORT_UNFINISHED();
     film[place] = pixel;
 }

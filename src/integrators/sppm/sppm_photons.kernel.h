@@ -1,4 +1,5 @@
-// Photon pass: emits a path and keeps a photon wherever an eye path would gather.
+// Photon pass: emits a path and keeps a photon wherever an eye path might gather: also where this path's own chance has it pass a
+// mask or meet the mirror of a mix, since the eye path takes that chance, too, and it counts once.
 // clang-format off
 #define KERNEL_CPU_VARIANTS kAllEffects, kTexturedEffects, kGlassEffects
 // clang-format on
@@ -42,19 +43,27 @@ KERNEL(sppm_photons) {
     vec3 power = start.power / float(pass.counts.x);
     uint rays = 0u;
     int depth = 0;
-    uint passed = 0u;
+    uint kept = 0u;
+    uint passed = 0u;  // interfaces and masks
     uint medium = start.medium;
     uint vertices = uint(params[0].maxdepth) + MAX_PASSED_SURFACES + 1u;  // more than a path has
     uint vertex = 0u;
     while (vertex < vertices) {
         vertex = vertices;
         Surface s;
-        if (!intersect_scene(origin, direction, s, rays)) break;
+        uint fate;
+        if (!intersect_next(origin, direction, s, fate, rays)) break;
         if (HAS(EFFECT_MEDIUM)) power *= medium_transmittance(medium, s.distance);
         if (HAS(EFFECT_MEDIUM) && is_black(power)) break;
-        if (HAS(EFFECT_INTERFACE) && is_interface(s)) {
-            origin = offset_origin(s.position, s.error, s.ng, direction);
-            medium = medium_behind(s, direction, medium);
+        if (fate != SURFACE_ABSENT && material_may_gather(s.material, params[0].glossy) &&
+            (depth > 0 || pass.keep.x == SPPM_KEEP_ALL) && in_box(s.position, pass.low, pass.high)) {
+            keep_photon(s.position, direction, power, photon_key(index, kept, pass.counts.w));
+            kept += 1u;
+        }
+        bool crosses = HAS(EFFECT_INTERFACE) && fate == SURFACE_STOPS && is_interface(s);
+        if (crosses || fate != SURFACE_STOPS) {
+            origin = origin_beyond(s.position, s.way, direction);
+            if (crosses) medium = medium_behind(s, direction, medium);
             if (++passed > MAX_PASSED_SURFACES) {
                 REPORT_UNFINISHED();
                 break;
@@ -66,9 +75,6 @@ KERNEL(sppm_photons) {
         Frame frame;
         Bsdf bsdf = material_bsdf(s, -direction, frame);
         uint action = visible_action(bsdf, params[0].glossy);
-        if (action != VISIBLE_FOLLOW && (depth > 0 || pass.keep.x == SPPM_KEEP_ALL) &&
-            in_box(s.position, pass.low, pass.high))
-            keep_photon(s.position, direction, power, photon_key(index, uint(depth), pass.counts.w));
         // What is reflected here is no caustic, but for the smooth coat over it: that is known once a lobe is chosen.
         if (depth >= params[0].maxdepth || (pass.keep.x == SPPM_KEEP_CAUSTIC && action == VISIBLE_GATHER)) break;
         uint dimension = EMISSION_DIMENSIONS + uint(depth) * PHOTON_VERTEX_DIMENSIONS;
@@ -104,5 +110,6 @@ KERNEL(sppm_photons) {
         vertex = uint(depth) + passed;
     }
     if (vertex != vertices) REPORT_UNFINISHED();  // the driver ended the loop
+    if (HAS(EFFECT_ALPHA) && kept > counters[SPPM_MOST_KEPT]) ATOMIC_MAX_U32(counters[SPPM_MOST_KEPT], kept);
     ATOMIC_ADD_U32(counters[SPPM_RAYS], rays);
 }

@@ -30,23 +30,28 @@ KERNEL(sppm_resolve) {
     FilmPixel pixel = film[index];
     uint i = 0u;
     uint count = passes[0].counts.z;
+    uint branches = passes[0].keep.y;
+    vec3 radiance = vec3(0.0f);
+    vec3 bias = vec3(0.0f);
     for (; i < count; ++i) {
         uint at = i * pixels + index;
         SppmHit hit = hits[at];
-        vec3 radiance = vec3(hit.radiance);
+        radiance += vec3(hit.radiance);
         vec4 q = queries[at];
-        vec3 bias = vec3(0.0f);
         if (q.w >= 0.0f) {
             vec4 sum = gathered[at];
             // Summing flux over area pass by pass is the shared-statistics estimate tau / (pi R^2), without its rescaling:
             // tau_n / R_n^2 = sum of Phi_i / R_i^2.
             vec3 share = vec3(hit.throughput) * (1.0f / (PI * max(q.w * q.w, SMALLEST_RADIUS_SQUARED)));
             radiance += share * vec3(sum);
-            bias = share * vec3(biases[at]);
+            bias += share * vec3(biases[at]);
             statistics[at] = shrink(statistics[at], sum.w);
         }
+        if ((i + 1u) % branches != 0u) continue;  // the branches of a path are one sample
         if (film_add(pixel, film_sensor(radiance), hit.throughput.w, passes[0].photons.z))
             film_add_bias(film_bias[index], bias * scene[0].camera.lens.w, hit.throughput.w);
+        radiance = vec3(0.0f);
+        bias = vec3(0.0f);
     }
     if (i != count) REPORT_UNFINISHED();
     film[index] = pixel;

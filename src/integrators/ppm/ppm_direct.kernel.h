@@ -1,0 +1,53 @@
+// Direct light at hit points that stay: sampled anew in every pass, where an eye path that is followed once would sample it once.
+// clang-format off
+#define KERNEL_CPU_VARIANTS kAllEffects, kTexturedEffects, kGlassEffects
+// clang-format on
+#include "core/kernel/scene.h"
+
+#include "core/kernel/direct_light.h"
+#include "core/kernel/film.h"
+#include "core/kernel/photon.h"
+#include "integrators/sppm/hit_point.functions.h"
+
+BUFFER_RO(0, FilmWindow, window)
+BUFFER_RO(1, SppmPass, passes)
+BUFFER_RW(2, FilmPixel, film)
+BUFFER_RW(3, SppmHit, hits)
+BUFFER_RO(4, vec4, queries)
+BUFFER_RW(5, vec4, ways)  // what each eye path found on its way
+
+CONST uint DIRECT_STREAM = 0x3c6ef372u;  // keeps the numbers apart from those of eye paths
+
+KERNEL(ppm_direct) {
+    FilmWindow w = window[0];
+    uint x = w.pixels.x + index % w.pixels.z;
+    uint y = w.pixels.y + index / w.pixels.z;
+    uint pixels = w.pixels.z * w.pixels.w;
+    uint pass = passes[0].photons.z;
+    uint count = passes[0].counts.z;
+    uint rays = 0u;
+    uint i = 0u;
+    for (; i < count; ++i) {
+        uint at = i * pixels + index;
+        if (pass == 0u) ways[at] = hits[at].radiance;
+        if (queries[at].w < 0.0f) continue;
+        SppmHit hit = hits[at];
+        vec3 direction = hit_direction(hit);
+        Surface s = hit_surface(hit);
+        Frame frame;
+        Bsdf bsdf = material_bsdf(s, -direction, frame);
+        // The points of all passes are one stratified set.
+        Sampler numbers =
+            sampler_begin(y * scene[0].camera.film.x + x, pass * count + i, w.samples.z ^ DIRECT_STREAM, w.samples.w);
+        // A light without extent is found in the same direction again.
+        bsdf.walk = hash_combine(numbers.key, numbers.index);
+        float u_light = 0.0f;
+        if (light_choice_needs_number()) u_light = sample_1d_at(numbers, 0u);
+        vec3 arriving = direct_light(s, frame, bsdf, to_local(frame, -direction), hit.more.z, u_light,
+                                     sample_2d_at(numbers, 1u), false, rays);
+        vec3 radiance = vec3(ways[at]) + vec3(hit.throughput) * arriving;
+        hits[at].radiance = vec4(radiance.x, radiance.y, radiance.z, hit.radiance.w);
+    }
+    if (i != count) REPORT_UNFINISHED();
+    film[index].counts.y += rays;
+}

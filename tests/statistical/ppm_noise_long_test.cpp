@@ -1,0 +1,17 @@
+// As ppm_noise_test, of coats on backends whose compiler takes long over them.
+#include "support/pass_noise.h"
+
+#include <gtest/gtest.h>
+
+namespace lampyris::test {
+namespace {
+
+TEST(PpmNoiseOfCoatsLong, AveragesOutOnEveryBackend) {
+    for (const std::string& backend : usable_backends()) {
+        SCOPED_TRACE(backend);
+        expect_new_noise_on_a_coat(backend);
+    }
+}
+
+}  // namespace
+}  // namespace lampyris::test
