@@ -28,7 +28,8 @@ Rendered render_description(SceneDescription description, const RenderSettings& 
     DeviceOptions device_options;
     device_options.threads = settings.threads;
     device_options.settings = settings.device_settings;
-    const std::unique_ptr<Device> device = create_device(settings.backend, device_options);
+    std::unique_ptr<Device> device = create_device(settings.backend, device_options);
+    if (settings.wrap) device = settings.wrap(std::move(device));
     const DeviceSceneHandle device_scene = device->upload(built.scene);
     Film film(*device, built.scene, built.settings.crop);
     RenderSession session(*device, built.scene, device_scene, film, {settings.samples, {}, {}});
@@ -36,6 +37,7 @@ Rendered render_description(SceneDescription description, const RenderSettings& 
     session.sampler = settings.sampler.value_or(built.settings.sampler) == "independent" ? kernel::SAMPLER_INDEPENDENT
                                                                                          : kernel::SAMPLER_SOBOL;
     session.max_slice = settings.slice;
+    session.eye_samples = settings.eye_samples;
     session.on_progress = settings.on_progress;
     session.photon_map = settings.photon_map;
     session.start_at(settings.first_pass);

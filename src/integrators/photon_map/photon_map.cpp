@@ -160,7 +160,7 @@ class PhotonMapRendering {
         pass_buffer_->upload(&record, sizeof record);
         set_window(uint32_t(pass));
         run(sppm_files::kEye, *eye_, "eye_pass",
-            std::array{window_, hit_params_, session_.film.buffer(), hits_.hits, hits_.queries});
+            std::array{window_, hit_params_, session_.film.buffer(), hits_.hits, hits_.queries, pass_buffer_});
         give_radii(hits_, hit_params_, "eye_pass");
         if (params_.gather == 0) {
             map_->gather(hits_.queries, pixels_, hit_radius_, pass);

@@ -10,6 +10,7 @@ BUFFER_RO(0, FilmWindow, window)
 BUFFER_RW(2, FilmPixel, film)
 BUFFER_RW(3, SppmHit, hits)
 BUFFER_RW(4, vec4, queries)
+BUFFER_RO(5, SppmPass, passes)
 
 KERNEL(sppm_eye) {
     FilmWindow w = window[0];
@@ -19,7 +20,7 @@ KERNEL(sppm_eye) {
     uint pixels = w.pixels.z * w.pixels.w;
     uint i = 0u;
     for (; i < w.samples.y; ++i) {
-        uint at = i * pixels + place;
+        uint at = ((w.samples.x + i) % passes[0].counts.z) * pixels + place;
         CameraSample camera = camera_sample(w, local, i);
         SppmHit hit;
         hit.origin = uvec4(0u);

@@ -1,4 +1,4 @@
-// Ends a pass: what was gathered becomes radiance and a sample of the film, and radii shrink.
+// Ends a pass, for the window's range of hit points: what was gathered becomes radiance and a sample of the film, and radii shrink.
 #include "core/kernel/scene.h"
 
 #include "core/kernel/film.h"
@@ -29,9 +29,8 @@ KERNEL(sppm_resolve) {
     uint pixels = w.pixels.z * w.pixels.w;
     FilmPixel pixel = film[index];
     uint i = 0u;
-    uint count = passes[0].counts.z;
-    for (; i < count; ++i) {
-        uint at = i * pixels + index;
+    for (; i < w.samples.y; ++i) {
+        uint at = ((w.samples.x + i) % passes[0].counts.z) * pixels + index;
         SppmHit hit = hits[at];
         vec3 radiance = vec3(hit.radiance);
         vec4 q = queries[at];
@@ -48,6 +47,6 @@ KERNEL(sppm_resolve) {
         film_add(pixel, film_sensor(radiance), hit.throughput.w, passes[0].photons.z);
         film_add_bias(film_bias[index], bias * scene[0].camera.lens.w, hit.throughput.w);
     }
-    if (i != count) REPORT_UNFINISHED();
+    if (i != w.samples.y) REPORT_UNFINISHED();
     film[index] = pixel;
 }
