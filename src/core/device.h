@@ -2,6 +2,8 @@
 // is as shared as the kernels are.
 #pragma once
 
+#include "core/error.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -51,11 +53,19 @@ struct DeviceStatistics {
         spirv_bytes;  // size of each kernel's SPIR-V, by its file's name; empty on CPU backends
 };
 
+// A kernel could not do all of its work: a loop's bound or a stack was not enough, or the driver ended a loop early. Less work at
+// once may do.
+class UnfinishedError : public MachineError {
+ public:
+    using MachineError::MachineError;
+};
+
 // What not every device can do.
 enum class DeviceFeature {
     kInt64Atomics,
     kRayQuery,  // rays of a scene are traced by hardware, or by what the driver has in its place
     kBoxes,     // build_boxes
+    kLongLoops,  // loops of any length in a kernel; elsewhere the driver ends them, and run throws UnfinishedError
 };
 
 class Device {
@@ -78,8 +88,9 @@ class Device {
     virtual KernelHandle compile(std::string_view file, uint32_t effects) = 0;
 
     // Runs the kernel for the indices [begin, begin + count), split as the device needs; `buffers[i]` is binding i of set 1.
-    // Returns when it is done. `scene` may be null for kernels that use no scene buffer. Throws MachineError when the device
-    // fails, or when a kernel reports an unfinished loop.
+    // Returns when it is done. `scene` may be null for kernels that use no scene buffer. With a count of 0 it gets the kernel ready for
+    // these buffers: some devices compile it anew for buffers above a size. Throws MachineError when the device fails, and
+    // UnfinishedError when a kernel reports an unfinished loop: what the buffers hold is then indeterminate.
     virtual void run(const Kernel& kernel, const DeviceScene* scene, std::span<const BufferHandle> buffers,
                      uint32_t begin, uint32_t count) = 0;
 

@@ -1,5 +1,7 @@
 #include "core/integrator.h"
 
+#include "core/sample_slices.h"
+
 #include <array>
 
 namespace lampyris {
@@ -22,11 +24,14 @@ void render_samples(RenderSession& session, const char* kernel_file, const void*
     const BufferHandle params = device.create_buffer(std::max<size_t>(parameter_bytes, 4), "parameters");
     if (parameter_bytes) params->upload(parameters, parameter_bytes);
     const std::array<BufferHandle, 3> buffers{window, params, session.film.buffer()};
+    device.run(*kernel, session.device_scene.get(), buffers, 0, 0);  // so that the session does not time the compiler
+    SampleSlices slices(device, session.film);
     while (const uint32_t count = session.next_passes()) {
-        const kernel::FilmWindow slice{session.film.window(),
-                                       {uint32_t(session.next_pass()), count, session.seed, session.sampler}};
-        window->upload(&slice, sizeof(slice));
-        device.run(*kernel, session.device_scene.get(), buffers, 0, session.film.pixel_count());
+        slices.run(uint32_t(session.next_pass()), count, [&](uint32_t first, uint32_t samples) {
+            const kernel::FilmWindow slice{session.film.window(), {first, samples, session.seed, session.sampler}};
+            window->upload(&slice, sizeof(slice));
+            device.run(*kernel, session.device_scene.get(), buffers, 0, session.film.pixel_count());
+        });
         session.passes_finished(count);
     }
 }

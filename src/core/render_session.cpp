@@ -1,5 +1,7 @@
 #include "core/render_session.h"
 
+#include "core/sample_slices.h"
+
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -10,8 +12,6 @@
 namespace lampyris {
 namespace {
 
-// A slice this long keeps Ctrl-C and the progress line responsive, and the film's download far below a per cent.
-constexpr double kSliceSeconds = 0.4;
 constexpr double kLookSeconds = 2.0;
 
 std::atomic<bool> interrupt_flag{false};
@@ -41,7 +41,7 @@ uint32_t RenderSession::next_passes() {
     if (interrupt_requested()) interrupted_ = true;
     if (interrupted_ || progress_.finished) return 0;
     uint64_t count = 1;
-    if (seconds_per_pass_ > 0.0) count = uint64_t(std::clamp(kSliceSeconds / seconds_per_pass_, 1.0, 1048576.0));
+    if (seconds_per_pass_ > 0.0) count = uint64_t(std::clamp(SampleSlices::kSliceSeconds / seconds_per_pass_, 1.0, 1048576.0));
     // Twice as many as before at most: the first slices are short, and tell how long a pass takes.
     count = std::min(count, std::max<uint64_t>(1, progress_.passes));
     if (limits_.seconds && seconds_per_pass_ > 0.0) {

@@ -24,7 +24,8 @@ std::vector<Rendered> render_description(SceneDescription description, const Ren
     DeviceOptions device_options;
     device_options.threads = settings.threads;
     device_options.settings = settings.device_settings;
-    const std::unique_ptr<Device> device = create_device(settings.backend, device_options);
+    std::unique_ptr<Device> device = create_device(settings.backend, device_options);
+    if (settings.wrap) device = settings.wrap(std::move(device));
     const DeviceSceneHandle device_scene = device->upload(built.scene);
     std::vector<Rendered> results;
     for (uint32_t i = 0; i < seeds; ++i) {

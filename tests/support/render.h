@@ -18,7 +18,7 @@ namespace lampyris::test {
 struct RenderSettings {
     std::string backend = "cpu";
     uint32_t samples = 16;
-    uint32_t eye_samples = 1;  // RenderSession's
+    uint32_t eye_samples = 1;  // of integrators that fix them
     uint32_t seed = 1;
     unsigned threads = 0;
     std::optional<std::array<int, 2>> resolution;
@@ -28,6 +28,7 @@ struct RenderSettings {
     std::map<std::string, std::string> device_settings;
     std::optional<std::array<int, 4>> crop;
     uint32_t first_pass = 0;
+    std::function<std::unique_ptr<Device>(std::unique_ptr<Device>)> wrap;  // what to render on in place of the device
     uint32_t slice = 0;  // passes per dispatch; 0: as the session decides
     std::function<void(const RenderProgress&, const Film&)> on_progress;  // RenderSession's
 };

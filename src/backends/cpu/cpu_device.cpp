@@ -111,7 +111,9 @@ class CpuDevice final : public Device {
     std::string backend() const override { return tracer_ == CpuTracerKind::embree ? "cpu" : "cpu-bvh2"; }
     std::string description() const override { return processor_name(); }
     unsigned threads() const override { return threads_; }
-    bool offers(DeviceFeature feature) const override { return feature == DeviceFeature::kInt64Atomics; }
+    bool offers(DeviceFeature feature) const override { 
+        return feature == DeviceFeature::kInt64Atomics || feature == DeviceFeature::kLongLoops;
+    }
 
     BufferHandle create_buffer(size_t bytes, std::string_view name) override {
         return std::make_shared<CpuBuffer>(bytes, name, meter_);
@@ -162,7 +164,7 @@ class CpuDevice final : public Device {
         });
         statistics_.kernel_s[cpu_kernel.file_] += seconds_since(start);
         if (unfinished)
-            throw MachineError(
+            throw UnfinishedError(
                 fmt::format("error: kernel {} could not finish a loop within its bound; the image would be wrong",
                             cpu_kernel.file_));
     }

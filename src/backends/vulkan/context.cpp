@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstdio>
 #include <cstring>
 
 namespace lampyris::vulkan {
@@ -113,6 +114,22 @@ bool offers_int64_atomics(const vk::raii::PhysicalDevice& device) {
         .shaderBufferInt64Atomics;
 }
 
+// Mesa's llvmpipe did before version 25. The version stands in a text only.
+bool ends_loops(const vk::raii::PhysicalDevice& device) {
+    const auto properties = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>();
+    const auto& driver = properties.get<vk::PhysicalDeviceDriverProperties>();
+    if (driver.driverID != vk::DriverId::eMesaLlvmpipe) return false;
+    constexpr unsigned kFirstWithout = 25;
+    unsigned version = 0;
+    return std::sscanf(driver.driverInfo.data(), "Mesa %u", &version) != 1 || version < kFirstWithout;
+}
+
+bool offers_buffer_addresses(const vk::raii::PhysicalDevice& device) {
+    return device.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>()
+        .get<vk::PhysicalDeviceVulkan12Features>()
+        .bufferDeviceAddress;
+}
+
 std::string driver_of(const vk::raii::PhysicalDevice& device) {
     const auto properties = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>();
     const auto& driver = properties.get<vk::PhysicalDeviceDriverProperties>();
@@ -143,14 +160,17 @@ Capabilities capabilities_of(const vk::raii::PhysicalDevice& device, uint32_t qu
                 .maxPrimitiveCount;
     can.int64 = device.getFeatures().shaderInt64;
     can.int64_atomics = can.int64 && offers_int64_atomics(device);
+    can.buffer_addresses = can.int64 && offers_buffer_addresses(device);
     can.flushes_denormals =
         device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceFloatControlsProperties>()
             .get<vk::PhysicalDeviceFloatControlsProperties>()
             .shaderDenormFlushToZeroFloat32;
+    can.ends_loops = ends_loops(device);
     can.timestamps =
         device.getQueueFamilyProperties()[queue_family].timestampValidBits > 0 && base.limits.timestampPeriod > 0;
     can.timestamp_ns = base.limits.timestampPeriod;
     can.max_storage_range = base.limits.maxStorageBufferRange;
+    can.max_push_constants = base.limits.maxPushConstantsSize;
     can.max_storage_buffers = base.limits.maxPerStageDescriptorStorageBuffers;
     can.max_groups = base.limits.maxComputeWorkGroupCount[0];
     can.max_allocation = properties.get<vk::PhysicalDeviceMaintenance3Properties>().maxMemoryAllocationSize;
@@ -255,7 +275,7 @@ Context::Context(const DeviceOptions& options) try {
     chain.get<vk::DeviceCreateInfo>().setQueueCreateInfos(queues).setPEnabledExtensionNames(extensions);
     chain.get<vk::PhysicalDeviceFeatures2>().features.shaderInt64 = can.int64;
     chain.get<vk::PhysicalDeviceVulkan12Features>().shaderBufferInt64Atomics = can.int64_atomics;
-    chain.get<vk::PhysicalDeviceVulkan12Features>().bufferDeviceAddress = can.ray_query;
+    chain.get<vk::PhysicalDeviceVulkan12Features>().bufferDeviceAddress = can.buffer_addresses || can.ray_query;
     if (can.ray_query) {
         chain.get<vk::PhysicalDeviceAccelerationStructureFeaturesKHR>().accelerationStructure = true;
         chain.get<vk::PhysicalDeviceRayQueryFeaturesKHR>().rayQuery = true;

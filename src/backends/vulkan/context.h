@@ -22,9 +22,12 @@ struct Capabilities {
     uint64_t max_boxes = 0;  // of an acceleration structure
     bool int64 = false, int64_atomics = false;
     bool flushes_denormals = false;  // of floats, when told to
+    bool ends_loops = false;         // after 65,535 iterations, those of loops within it included
     bool timestamps = false;
     double timestamp_ns = 1;  // per tick
-    uint64_t max_storage_range = 0, max_allocation = 0;
+    // Of a buffer that is bound, of an allocation, of what a dispatch is given directly.
+    uint64_t max_storage_range = 0, max_allocation = 0, max_push_constants = 0;
+    bool buffer_addresses = false;  // and integers of 64 bits to compute them with
     uint32_t max_storage_buffers = 0, max_groups = 0;
     bool has_host_visible_local = false;  // memory that both see: map it and copy nothing
 };

@@ -8,12 +8,17 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <charconv>
 #include <chrono>
+#include <limits>
 
 namespace lampyris::vulkan {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr uint64_t kLeastBinding = 16;  // the flag of unfinished loops stays bound
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -24,9 +29,10 @@ class VulkanDevice final : public Device {
           account_(std::make_shared<MemoryAccount>()),
           cache_(cache_folder(options)) {
         check_settings("vulkan", options,
-                       {"cache", "exact", "optimize", "precise", "ray_query", "specialise", "staging", "validation",
+                       {"cache", "exact", "max_binding", "optimize", "precise", "ray_query", "specialise", "staging", "validation",
                         "wide_reads", "workgroup"});
         account_->limit = options.max_memory;
+        context_->can.max_storage_range = std::min(context_->can.max_storage_range, largest_binding(options));
         shader_options_.precise = read_switch(options, "precise", Switch::on) != Switch::off;
         shader_options_.optimize = read_switch(options, "optimize", Switch::on) != Switch::off;
         shader_options_.local_size = workgroup_size(options);
@@ -51,7 +57,7 @@ class VulkanDevice final : public Device {
         unfinished_ = std::make_unique<VulkanBuffer>(context_, account_, sizeof(uint32_t), "the unfinished flag",
                                                      BufferOptions{.read_back = true});
         unfinished_->fill_zero();
-        no_scene_.buffers[kUnfinishedBinding] = unfinished_->handle();
+        no_scene_.buffers[kUnfinishedBinding] = unfinished_->binding();
         // Drivers that are a CPU divide by its instructions, which round as IEEE 754 says.
         const Switch exact = read_switch(options, "exact", Switch::off);
         shader_options_.exact = exact == Switch::on || (exact == Switch::automatic && !context_->can.is_cpu);
@@ -70,16 +76,12 @@ class VulkanDevice final : public Device {
             case DeviceFeature::kInt64Atomics: return context_->can.int64_atomics;
             case DeviceFeature::kRayQuery: return shader_options_.ray_query;
             case DeviceFeature::kBoxes: return context_->can.ray_query;
+            case DeviceFeature::kLongLoops: return !context_->can.ends_loops;
         }
         return false;
     }
 
     BufferHandle create_buffer(size_t bytes, std::string_view name) override {
-        if (bytes > context_->can.max_storage_range) {
-            throw MachineError(
-                fmt::format("error: Vulkan: {} binds at most {:.0f} MB to a buffer, and {} needs {:.0f} MB",
-                            context_->name, double(context_->can.max_storage_range) / 1e6, name, double(bytes) / 1e6));
-        }
         BufferOptions options{.staged = staged_};
         if (context_->can.ray_query) options.usage |= kBuildInputUsage;  // it may come to hold boxes
         auto buffer = std::make_shared<VulkanBuffer>(context_, account_, bytes, name, options);
@@ -102,11 +104,13 @@ class VulkanDevice final : public Device {
         const auto start = Clock::now();
         ShaderOptions options = shader_options_;
         options.effects = specialise_ ? effects : kernel::kAllEffects;
-        const CompiledShader shader = compile_shader(file, options, cache_);
+        CompiledShader shader = compile_shader(file, options, cache_);
         std::shared_ptr<VulkanKernel> kernel;
         guarded(fmt::format("compiling kernel {}", file), [&] {
-            kernel = std::make_shared<VulkanKernel>(context_, std::string(file), shader, options.local_size);
-            if (!kernel->uses_acceleration_structure()) kernel->warm_up(no_scene_, unfinished_->handle());
+            kernel = std::make_shared<VulkanKernel>(context_, std::string(file), std::move(shader), options.local_size);
+            // Where some buffers are too large to bind, the first run tells which: nothing is compiled twice.
+            if (!kernel->uses_acceleration_structure() && account_->too_large_to_bind == 0)
+                kernel->prepare(no_scene_, unfinished_->handle());
         });
         const double seconds = seconds_since(start);
         statistics_.compile_s += seconds;
@@ -125,12 +129,15 @@ class VulkanDevice final : public Device {
         for (size_t i = 0; i < buffers.size(); ++i) {
             if (!buffers[i]) continue;
             const auto& buffer = dynamic_cast<const VulkanBuffer&>(*buffers[i]);
-            handles[i].buffer = buffer.handle();
+            handles[i] = buffer.binding();
             if (buffer.boxes) handles[i].structure = buffer.boxes->top_level();
         }
         guarded(fmt::format("running kernel {}", vulkan_kernel.file()), [&] {
             const SceneBindings& bindings = scene ? dynamic_cast<const VulkanScene&>(*scene).bindings() : no_scene_;
-            statistics_.kernel_s[vulkan_kernel.file()] += vulkan_kernel.run(bindings, handles, begin, count);
+            const VulkanKernel::Spent spent =
+                vulkan_kernel.run(bindings, handles, begin, count, [&] { return is_unfinished(); });
+            statistics_.compile_s += spent.compile_s;
+            statistics_.kernel_s[vulkan_kernel.file()] += spent.kernel_s;
             check_unfinished(vulkan_kernel.file());
         });
     }
@@ -176,6 +183,18 @@ class VulkanDevice final : public Device {
         return found->second == "off" ? std::filesystem::path() : std::filesystem::path(found->second);
     }
 
+    static uint64_t largest_binding(const DeviceOptions& options) {
+        const auto found = options.settings.find("max_binding");
+        if (found == options.settings.end()) return std::numeric_limits<uint64_t>::max();
+        uint64_t bytes = 0;
+        const std::string& text = found->second;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), bytes);
+        if (error != std::errc() || end != text.data() + text.size() || bytes < kLeastBinding)
+            throw InputError(fmt::format("error: --set backend.max_binding={}: valid is a number of bytes, {} or more",
+                                         text, kLeastBinding));
+        return bytes;
+    }
+
     static uint32_t workgroup_size(const DeviceOptions& options) {
         const auto found = options.settings.find("workgroup");
         if (found == options.settings.end()) return ShaderOptions().local_size;
@@ -197,16 +216,20 @@ class VulkanDevice final : public Device {
         if (context_->validation) context_->check_validation();
     }
 
-    void check_unfinished(const std::string& file) {
+    bool is_unfinished() const {
         uint32_t flag = 0;
         unfinished_->download(&flag, sizeof flag, 0);
-        if (flag == 0) return;
+        return flag != 0;
+    }
+
+    void check_unfinished(const std::string& file) {
+        if (!is_unfinished()) return;
         unfinished_->fill_zero();
-        throw MachineError(
+        throw UnfinishedError(
             fmt::format("error: kernel {} could not finish a loop within its bound: the driver ended the loop early, "
-                        "or a stack was too small. The image "
-                        "would be wrong. Mesa before 25 ends loops after 65,535 iterations: take fewer samples at "
-                        "once, or --backend cpu",
+                        "or a stack was too small. The image would be wrong. Mesa before 25 ends loops after 65,535 "
+                        "iterations, which long paths, many rays of a sample or many photons within a radius take: "
+                        "a newer driver or --backend cpu does not",
                         file));
     }
 

@@ -1,5 +1,6 @@
 #include "backends/vulkan/memory.h"
 
+#include "backends/vulkan/addresses.h"
 #include "core/error.h"
 
 #include <fmt/format.h>
@@ -33,6 +34,13 @@ VulkanBuffer::VulkanBuffer(std::shared_ptr<Context> context, std::shared_ptr<Mem
                                        mebibytes(rounded), mebibytes(account_->used), mebibytes(account_->limit)));
     }
     using Usage = vk::BufferUsageFlagBits;
+    too_large_to_bind_ = (options.usage & Usage::eStorageBuffer) && rounded > can.max_storage_range;
+    if (too_large_to_bind_ && !can.buffer_addresses)
+        throw MachineError(
+            fmt::format("error: Vulkan: {} binds at most {} to a buffer, offers no buffer addresses of 64 bits, and {} "
+                        "needs {}; --backend cpu has no such limit",
+                        context_->name, mebibytes(can.max_storage_range), name_, mebibytes(rounded)));
+    if (too_large_to_bind_) options.usage |= Usage::eShaderDeviceAddress;
     using Memory = vk::MemoryPropertyFlagBits;
     try {
         buffer_ = vk::raii::Buffer(
@@ -56,14 +64,25 @@ VulkanBuffer::VulkanBuffer(std::shared_ptr<Context> context, std::shared_ptr<Mem
     }
     account_->used += allocated_;
     account_->peak = std::max(account_->peak, account_->used);
+    account_->too_large_to_bind += too_large_to_bind_;
 }
 
 VulkanBuffer::~VulkanBuffer() {
     account_->used -= allocated_;
+    account_->too_large_to_bind -= too_large_to_bind_;
     buffer_ = nullptr;  // before its memory
 }
 
 vk::DeviceAddress VulkanBuffer::address() const { return context_->device.getBufferAddress(*buffer_); }
+
+KernelBinding VulkanBuffer::binding() const {
+    if (!too_large_to_bind_) return {*buffer_, {}, 0};
+    const vk::DeviceAddress place = address();
+    if (place % kAddressAlignment != 0)
+        throw MachineError(fmt::format("error: Vulkan: {} puts {} at no multiple of {} bytes", context_->name, name_,
+                                       kAddressAlignment));
+    return {*buffer_, {}, place};
+}
 
 void VulkanBuffer::check_range(size_t bytes, size_t offset) const {
     if (offset > size_ || bytes > size_ - offset) {

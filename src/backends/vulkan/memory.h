@@ -7,9 +7,10 @@ namespace lampyris::vulkan {
 
 class BoxStructure;
 
-// Bytes in use and their largest number, and the limit (0: none).
+// Bytes in use and their largest number, the limit (0: none), and what of it kernels must address.
 struct MemoryAccount {
     size_t used = 0, peak = 0;
+    size_t too_large_to_bind = 0;  // number of buffers
     uint64_t limit = 0;
 };
 
@@ -18,6 +19,14 @@ struct BufferOptions {
     bool read_back = false;  // mapped, and above all read by the host
     vk::BufferUsageFlags usage = vk::BufferUsageFlagBits::eStorageBuffer;
     size_t alignment = 0;  // of the address; 0: whatever the device wants
+};
+
+// What is bound to a binding of a kernel: a buffer, or the structure over the boxes in it, whichever the kernel asks for. A buffer
+// that is too large to be bound has an address.
+struct KernelBinding {
+    vk::Buffer buffer;
+    vk::AccelerationStructureKHR structure;
+    vk::DeviceAddress address = 0;
 };
 
 class VulkanBuffer final : public Buffer {
@@ -35,7 +44,8 @@ class VulkanBuffer final : public Buffer {
     void fill_zero() override;
 
     vk::Buffer handle() const { return *buffer_; }
-    vk::DeviceAddress address() const;  // for acceleration structures
+    vk::DeviceAddress address() const;  // of buffers made for it (eShaderDeviceAddress), and of those that are too large to bind
+    KernelBinding binding() const;
     void* mapped() const { return mapped_; }
     void check_range(size_t bytes, size_t offset) const;  // throws std::logic_error
 
@@ -46,6 +56,7 @@ class VulkanBuffer final : public Buffer {
     std::shared_ptr<MemoryAccount> account_;
     std::string name_;
     size_t size_ = 0, allocated_ = 0;
+    bool too_large_to_bind_ = false;
     vk::raii::DeviceMemory memory_ = nullptr;  // after the buffer would be freed before it
     vk::raii::Buffer buffer_ = nullptr;
     void* mapped_ = nullptr;

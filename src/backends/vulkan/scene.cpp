@@ -2,7 +2,6 @@
 
 #include "backends/vulkan/ray_query.h"
 #include "core/bvh/bvh2.h"
-#include "core/error.h"
 #include "core/scene/scene.h"
 
 #include <fmt/format.h>
@@ -12,16 +11,10 @@ namespace lampyris::vulkan {
 VulkanScene::VulkanScene(std::shared_ptr<Context> context, std::shared_ptr<MemoryAccount> account, const Scene& scene,
                          bool staged, bool ray_query, const VulkanBuffer& unfinished) {
     const auto add = [&](uint32_t binding, const void* data, size_t bytes, const char* name) {
-        if (bytes > context->can.max_storage_range) {
-            throw MachineError(
-                fmt::format("error: Vulkan: {} binds at most {:.0f} MB to a buffer, and the scene's {} take {:.0f} MB; "
-                            "--backend cpu has no such limit",
-                            context->name, double(context->can.max_storage_range) / 1e6, name, double(bytes) / 1e6));
-        }
         auto buffer = std::make_unique<VulkanBuffer>(context, account, bytes, fmt::format("the scene's {}", name),
                                                      BufferOptions{.staged = staged});
         if (bytes > 0) buffer->upload(data, bytes, 0);
-        bindings_.buffers[binding] = buffer->handle();
+        bindings_.buffers[binding] = buffer->binding();
         buffers_.push_back(std::move(buffer));
     };
     const auto add_array = [&](uint32_t binding, const auto& array, const char* name) {
@@ -56,7 +49,7 @@ VulkanScene::VulkanScene(std::shared_ptr<Context> context, std::shared_ptr<Memor
         structures_ = std::make_unique<AccelerationStructures>(context, account, scene, staged);
         bindings_.top_level = structures_->top_level();
     }
-    bindings_.buffers[kUnfinishedBinding] = unfinished.handle();
+    bindings_.buffers[kUnfinishedBinding] = unfinished.binding();
 }
 
 VulkanScene::~VulkanScene() = default;

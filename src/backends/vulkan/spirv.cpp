@@ -31,13 +31,14 @@ bool is_float_arithmetic(spv::Op op) {
     }
 }
 
+}  // namespace
+
 bool is_annotation(spv::Op op) {
     return op == spv::OpDecorate || op == spv::OpMemberDecorate || op == spv::OpDecorationGroup ||
            op == spv::OpGroupDecorate || op == spv::OpGroupMemberDecorate || op == spv::OpDecorateId ||
            op == spv::OpDecorateString || op == spv::OpMemberDecorateString;
 }
 
-// Sections that come before the annotations in a module (SPIR-V specification, 2.4).
 bool precedes_annotations(spv::Op op) {
     switch (op) {
         case spv::OpCapability:
@@ -57,8 +58,6 @@ bool precedes_annotations(spv::Op op) {
         default: return false;
     }
 }
-
-}  // namespace
 
 Spirv forbid_contraction(const Spirv& spirv) {
     std::set<uint32_t> decorated;

@@ -24,6 +24,10 @@ void for_each_instruction(const Spirv& spirv, Visit&& visit) {
     }
 }
 
+// Decorations, and what comes before them in a module (SPIR-V specification, 2.4).
+bool is_annotation(spv::Op op);
+bool precedes_annotations(spv::Op op);
+
 // Decorates every floating-point arithmetic result NoContraction, so that neither the optimizer nor a driver contracts or
 // reassociates: bit equality with the CPU rests on it. Idempotent.
 Spirv forbid_contraction(const Spirv& spirv);

@@ -21,11 +21,13 @@ KERNEL(ao) {
         Surface s;
         if (intersect_scene(camera.ray.origin, camera.ray.direction, s, rays)) {
             Frame frame = frame_from_z(face_forward(s.ng, -camera.ray.direction));
-            for (int k = 0; k < params[0].rays; ++k) {
+            int k = 0;
+            for (; k < params[0].rays; ++k) {
                 vec3 direction = to_world(frame, sample_cosine_hemisphere(sample_2d(camera.numbers)));
                 float limit = min(params[0].distance, INFINITE_DISTANCE);
                 seen += scene_openness(s.position, s.error, s.ng, direction, limit, rays);
             }
+            if (k != params[0].rays) REPORT_UNFINISHED();
             seen = seen / float(params[0].rays);
             pixel.normal += vec4(s.ns.x, s.ns.y, s.ns.z, 0.0f);
             pixel.squares.w += s.distance;

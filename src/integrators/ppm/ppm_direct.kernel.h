@@ -1,4 +1,4 @@
-// Direct light at hit points that stay: sampled anew in every pass, where an eye path that is followed once would sample it once.
+// Direct light at the window's range of hit points, which stay: sampled anew in every pass, where an eye path that is followed once would sample it once.
 // clang-format off
 #define KERNEL_CPU_VARIANTS kAllEffects, kTexturedEffects, kGlassEffects
 // clang-format on
@@ -24,11 +24,12 @@ KERNEL(ppm_direct) {
     uint y = w.pixels.y + index / w.pixels.z;
     uint pixels = w.pixels.z * w.pixels.w;
     uint pass = passes[0].photons.z;
-    uint count = passes[0].counts.z;
+    uint points = passes[0].counts.z;
     uint rays = 0u;
     uint i = 0u;
-    for (; i < count; ++i) {
-        uint at = i * pixels + index;
+    for (; i < w.samples.y; ++i) {
+        uint point = w.samples.x + i;
+        uint at = point * pixels + index;
         if (pass == 0u) ways[at] = hits[at].radiance;
         if (queries[at].w < 0.0f) continue;
         SppmHit hit = hits[at];
@@ -38,7 +39,7 @@ KERNEL(ppm_direct) {
         Bsdf bsdf = material_bsdf(s, -direction, frame);
         // The points of all passes are one stratified set.
         Sampler numbers =
-            sampler_begin(y * scene[0].camera.film.x + x, pass * count + i, w.samples.z ^ DIRECT_STREAM, w.samples.w);
+            sampler_begin(y * scene[0].camera.film.x + x, pass * points + point, w.samples.z ^ DIRECT_STREAM, w.samples.w);
         // A light without extent is found in the same direction again.
         bsdf.walk = hash_combine(numbers.key, numbers.index);
         float u_light = 0.0f;
@@ -48,6 +49,6 @@ KERNEL(ppm_direct) {
         vec3 radiance = vec3(ways[at]) + vec3(hit.throughput) * arriving;
         hits[at].radiance = vec4(radiance.x, radiance.y, radiance.z, hit.radiance.w);
     }
-    if (i != count) REPORT_UNFINISHED();
+    if (i != w.samples.y) REPORT_UNFINISHED();
     film[index].counts.y += rays;
 }

@@ -1,6 +1,7 @@
 #include "integrators/sppm/photon_mapping.h"
 
 #include "core/error.h"
+#include "core/sample_slices.h"
 #include "integrators/sppm/photon_host.h"
 
 #include <fmt/format.h>
@@ -24,7 +25,8 @@ class PhotonMapping {
           // A path that is followed once takes both ways at a coat.
           branches_(fixed_ && (session.scene.effects.mask() & kernel::EFFECT_COAT) ? 2 : 1),
           points_(std::max(eye_samples, 1u) * branches_),
-          pixels_(session.film.pixel_count()) {
+          pixels_(session.film.pixel_count()),
+          eye_slices_(session.device, session.film) {
         const uint64_t points = uint64_t(std::max(eye_samples, 1u)) * branches_ * pixels_;
         if (points > std::numeric_limits<uint32_t>::max())
             throw InputError(fmt::format("error: {} hit points are more than 2^32; take fewer --spp", points));
@@ -35,16 +37,11 @@ class PhotonMapping {
         // A part has so few paths that keys tell a photon for each of their bounces apart.
         part_ = std::max(1u, std::min(paths_, std::numeric_limits<uint32_t>::max() / (uint32_t(params.maxdepth) + 1)));
         const uint32_t effects = session.scene.effects.mask();
-        eye_ = device_.compile(sppm_files::kEye, effects);
-        radius_ = device_.compile(sppm_files::kRadius, 0);
-        photons_ = device_.compile(sppm_files::kPhotons, effects);
-        resolve_ = device_.compile(sppm_files::kResolve, effects);
         window_ = device_.create_buffer(sizeof(kernel::FilmWindow), "film window");
         params_buffer_ = argument_buffer(device_, params_, "parameters");
         SppmParams eye_params = params_;
         if (samples_lights_each_pass()) {
             eye_params.direct = kernel::SPPM_DIRECT_PHOTONS;  // eye paths leave it to ppm_direct
-            direct_ = device_.compile(sppm_files::kDirect, effects);
             ways_ = device_.create_buffer(points * sizeof(glm::vec4), "radiance on the way to hit points");
         }
         eye_params_buffer_ = argument_buffer(device_, eye_params, "parameters of eye paths");
@@ -55,6 +52,12 @@ class PhotonMapping {
         gathered_ = device_.create_buffer(points * sizeof(glm::vec4), "gathered flux");
         statistics_ = device_.create_buffer(points * sizeof(glm::vec2), "photon statistics");
         store_ = device_.create_buffer(size_t(capacity_) * sizeof(kernel::PhotonRecord), "photons");
+        // After the buffers: a device that must address large ones compiles at the first run.
+        eye_ = device_.compile(sppm_files::kEye, effects);
+        radius_ = device_.compile(sppm_files::kRadius, 0);
+        photons_ = device_.compile(sppm_files::kPhotons, effects);
+        resolve_ = device_.compile(sppm_files::kResolve, effects);
+        if (samples_lights_each_pass()) direct_ = device_.compile(sppm_files::kDirect, effects);
         const std::vector<glm::vec2> initial(points, glm::vec2(1.0f, 0.0f));
         statistics_->upload(initial.data(), initial.size() * sizeof(glm::vec2));
         map_ = create_photon_map(session.photon_map);
@@ -73,6 +76,7 @@ class PhotonMapping {
             throw InputError(
                 "error: with fixed hit points or schedule=shared a pass depends on those before it, and cannot be "
                 "rendered alone; take sppm with schedule=memoryless");
+        get_ready();
         while (const uint32_t count = session_.next_passes()) {
             for (uint32_t i = 0; i < count; ++i) one_pass(session_.next_pass() + i);
             session_.passes_finished(count);
@@ -81,6 +85,15 @@ class PhotonMapping {
     }
 
  private:
+    // So that the session does not time the compiler.
+    void get_ready() {
+        run_eye(0);
+        run_radius(0);
+        run_photons(0);
+        run_resolve(0);
+        if (direct_) run_direct(0);
+    }
+
     void one_pass(uint64_t pass) {
         pass_.photons = {0, capacity_, uint32_t(pass), session_.seed};
         pass_.counts = {paths_, session_.sampler, points_, 0};
@@ -92,31 +105,48 @@ class PhotonMapping {
         counters_->upload(&zero, sizeof zero);
         pass_buffer_->upload(&pass_, sizeof pass_);
         if (!fixed_ || !followed_) follow_eye_paths(pass);
-        if (samples_lights_each_pass())
-            run(sppm_files::kDirect, *direct_, "eye_pass",
-                std::array{window_, pass_buffer_, session_.film.buffer(), hits_, queries_, ways_}, pixels_);
-        run(sppm_files::kRadius, *radius_, "eye_pass",
-            std::array{params_buffer_, pass_buffer_, hits_, queries_, statistics_, gathered_, counters_, biases_},
-            points_ * pixels_);
+        if (samples_lights_each_pass()) sample_lights();
+        run_radius(points_ * pixels_);
         const SppmCounters box = download_counters();
         unpack_box(box, pass_);
         largest_radius_ = std::bit_cast<float>(box[kernel::SPPM_RADIUS]);
         // No eye path ends where photons would be of use: there is nothing to emit them for.
         if (box[kernel::SPPM_RADIUS] > 0) photon_pass();
-        run(sppm_files::kResolve, *resolve_, "resolve",
-            std::array{window_, params_buffer_, session_.film.buffer(), pass_buffer_, hits_, queries_, gathered_,
-                       statistics_, biases_, film_bias_},
-            pixels_);
+        resolve(pass);
     }
 
     void follow_eye_paths(uint64_t pass) {
-        const kernel::FilmWindow window{
-            session_.film.window(),
-            {fixed_ ? 0u : uint32_t(pass), points_ / branches_, session_.seed, session_.sampler}};
-        window_->upload(&window, sizeof window);
-        run(sppm_files::kEye, *eye_, "eye_pass",
-            std::array{window_, eye_params_buffer_, session_.film.buffer(), hits_, queries_, pass_buffer_}, pixels_);
+        eye_slices_.run(fixed_ ? 0u : uint32_t(pass), points_ / branches_, [&](uint32_t first, uint32_t count) {
+            set_window(first, count);
+            run_eye(pixels_);
+        });
         followed_ = true;
+    }
+
+    // At the hit points, which are the same in every pass.
+    void sample_lights() {
+        // Shadow rays take a few dozen turns each: far from where some drivers end loops. What the first pass saves must not be saved
+        // again, so that a part is not repeated.
+        constexpr uint32_t kPoints = 256;
+        for (uint32_t done = 0; done < points_; done += kPoints) {
+            set_window(done, std::min(points_ - done, kPoints));
+            run_direct(pixels_);
+        }
+    }
+
+    void resolve(uint64_t pass) {
+        // The kernel's loop takes one turn a hit point: far from where some drivers end loops.
+        constexpr uint32_t kTurns = 16384;
+        const uint32_t samples = points_ / branches_;
+        for (uint32_t done = 0; done < samples; done += kTurns) {
+            set_window((fixed_ ? 0u : uint32_t(pass)) + done, std::min(samples - done, kTurns));
+            run_resolve(pixels_);
+        }
+    }
+
+    void set_window(uint32_t first, uint32_t count) {
+        const kernel::FilmWindow window{session_.film.window(), {first, count, session_.seed, session_.sampler}};
+        window_->upload(&window, sizeof window);
     }
 
     // Emits the pass's paths in parts whose photons fit into the store, and gathers each.
@@ -129,8 +159,7 @@ class PhotonMapping {
             pass_buffer_->upload(&pass_, sizeof pass_);
             const uint32_t none[3] = {0, 0, 0};
             counters_->upload(none, sizeof none);
-            run(sppm_files::kPhotons, *photons_, "photon_tracing",
-                std::array{pass_buffer_, params_buffer_, store_, counters_}, count);
+            run_photons(count);
             const SppmCounters counters = download_counters();
             const uint32_t stored = counters[kernel::SPPM_STORED];
             session_.photons.rays += counters[kernel::SPPM_RAYS];
@@ -176,6 +205,29 @@ class PhotonMapping {
         map_->gather(consumer_, queries_, 0, points_ * pixels_);
     }
 
+    void run_eye(uint32_t count) {
+        run(sppm_files::kEye, *eye_, "eye_pass",
+            std::array{window_, eye_params_buffer_, session_.film.buffer(), hits_, queries_, pass_buffer_}, count);
+    }
+    void run_direct(uint32_t count) {
+        run(sppm_files::kDirect, *direct_, "eye_pass",
+            std::array{window_, pass_buffer_, session_.film.buffer(), hits_, queries_, ways_}, count);
+    }
+    void run_radius(uint32_t count) {
+        run(sppm_files::kRadius, *radius_, "eye_pass",
+            std::array{params_buffer_, pass_buffer_, hits_, queries_, statistics_, gathered_, counters_, biases_},
+            count);
+    }
+    void run_photons(uint32_t count) {
+        run(sppm_files::kPhotons, *photons_, "photon_tracing",
+            std::array{pass_buffer_, params_buffer_, store_, counters_}, count);
+    }
+    void run_resolve(uint32_t count) {
+        run(sppm_files::kResolve, *resolve_, "resolve",
+            std::array{window_, params_buffer_, session_.film.buffer(), pass_buffer_, hits_, queries_, gathered_,
+                       statistics_, biases_, film_bias_},
+            count);
+    }
     template <size_t n>
     void run(const char* file, const Kernel& kernel, const char* phase, const std::array<BufferHandle, n>& buffers,
              uint32_t count) {
@@ -202,6 +254,7 @@ class PhotonMapping {
     const uint32_t points_;    // hit points a pixel
     const uint32_t pixels_;
     uint32_t paths_ = 0, part_ = 0, capacity_ = 0;
+    SampleSlices eye_slices_;
     bool followed_ = false;
     float largest_radius_ = 0;
     kernel::SppmPass pass_{};

@@ -14,7 +14,9 @@ struct SppmHit {
 
 struct SppmPass {
     uvec4 photons;  // first path of this part, photons that fit, pass, seed
-    uvec4 counts;   // paths emitted in the pass, sampler kind, hit points a pixel, paths in a build of the map (keys)
+    // Paths emitted in the pass, sampler kind, hit points a pixel, paths in a build of the map (keys). Where there is one eye sample a
+    // pixel, FilmWindow counts passes; where there are more, these.
+    uvec4 counts;
     vec4 low;       // photons are kept within this box
     vec4 high;
     vec4 scale;  // x: squared radius over that of the first pass, where passes have the same one (memoryless)

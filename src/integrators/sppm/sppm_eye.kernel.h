@@ -18,11 +18,11 @@ KERNEL(sppm_eye) {
     uint place = local.y * w.pixels.z + local.x;
     FilmPixel pixel = film[place];
     uint pixels = w.pixels.z * w.pixels.w;
-    uint count = passes[0].counts.z;
     uint branches = passes[0].keep.y;
+    uint count = w.samples.y * branches;
     uint i = 0u;
     for (; i < count; ++i) {
-        uint at = i * pixels + place;
+        uint at = ((w.samples.x * branches + i) % passes[0].counts.z) * pixels + place;
         CameraSample camera = camera_sample(w, local, i / branches);
         SppmHit hit;
         hit.origin = uvec4(0u);

@@ -1,4 +1,4 @@
-// Ends a pass: what was gathered becomes radiance and a sample of the film, and radii shrink.
+// Ends a pass, for the window's range of hit points: what was gathered becomes radiance and a sample of the film, and radii shrink.
 #include "core/kernel/scene.h"
 
 #include "core/kernel/film.h"
@@ -29,12 +29,12 @@ KERNEL(sppm_resolve) {
     uint pixels = w.pixels.z * w.pixels.w;
     FilmPixel pixel = film[index];
     uint i = 0u;
-    uint count = passes[0].counts.z;
     uint branches = passes[0].keep.y;
+    uint count = w.samples.y * branches;
     vec3 radiance = vec3(0.0f);
     vec3 bias = vec3(0.0f);
     for (; i < count; ++i) {
-        uint at = i * pixels + index;
+        uint at = ((w.samples.x * branches + i) % passes[0].counts.z) * pixels + index;
         SppmHit hit = hits[at];
         radiance += vec3(hit.radiance);
         vec4 q = queries[at];
