@@ -4,9 +4,17 @@
 
 #include <cmath>
 #include <filesystem>
+#include <map>
 
 namespace lampyris::test {
 namespace {
+
+std::shared_ptr<Device> shared_device(const std::string& backend) {
+    static std::map<std::string, std::shared_ptr<Device>> devices;
+    std::shared_ptr<Device>& device = devices[backend];
+    if (!device) device = create_device(backend, {});
+    return device;
+}
 
 Rendered render_description(SceneDescription description, const RenderSettings& settings, Diagnostics& diagnostics) {
     BuildOptions options;
@@ -14,6 +22,10 @@ Rendered render_description(SceneDescription description, const RenderSettings& 
     options.crop = settings.crop;
     BuiltScene built = build_scene(std::move(description), options, diagnostics);
     diagnostics.throw_if_errors();
+    if (settings.one_variant && settings.backend == "vulkan") {
+        built.scene.effects.ask(kernel::kAllEffects, "the test");
+        built.scene.record.counts.w = built.scene.effects.mask();
+    }
     PluginChoice choice;
     if (!settings.integrator.empty()) choice = parse_plugin_choice(settings.integrator);
     const std::string name = choice.name.empty() ? built.settings.integrator.type : choice.name;
@@ -28,7 +40,8 @@ Rendered render_description(SceneDescription description, const RenderSettings& 
     DeviceOptions device_options;
     device_options.threads = settings.threads;
     device_options.settings = settings.device_settings;
-    const std::unique_ptr<Device> device = create_device(settings.backend, device_options);
+    const std::shared_ptr<Device> device =
+        settings.one_variant ? shared_device(settings.backend) : create_device(settings.backend, device_options);
     const DeviceSceneHandle device_scene = device->upload(built.scene);
     Film film(*device, built.scene, built.settings.crop);
     RenderSession session(*device, built.scene, device_scene, film, {settings.samples, {}, {}});

@@ -48,7 +48,6 @@ FN bool emit_from_area(uint index, float u_side, vec2 u_place, vec2 u_direction,
 FN bool emit_from_point(uint index, vec2 u_place, vec2 u_direction, INOUT(Emission) e) {
     LightRecord light = lights[index];
     float pdf = pdf_uniform_sphere();
-    e.origin = vec3(light.v0);
     if (light.data.x == LIGHT_SPOT) {
         float one_minus_cos = 1.0f - light.v2.w;
         e.direction = to_world(frame_from_z(vec3(light.v1)), sample_uniform_cone(u_direction, one_minus_cos));
@@ -65,6 +64,7 @@ FN bool emit_from_point(uint index, vec2 u_place, vec2 u_direction, INOUT(Emissi
         e.direction = sample_uniform_sphere(u_direction);
     }
     e.direction = unit(e.direction);
+    e.origin = vec3(light.v0) + point_offset(vec3(light.v0), e.direction) * e.direction;
     e.power = point_light_intensity(light, e.direction) / (pdf * light.emission.w);
     e.medium = light_medium(index, e.direction, e.direction);
     return true;
