@@ -36,7 +36,7 @@ FN bool emit_from_area(uint index, float u_side, vec2 u_place, vec2 u_direction,
         sides = 2.0f;
         if (u_side < 0.5f) local.z = -local.z;
     }
-    e.direction = unit(to_world(frame_from_z(place.ng), local));
+    e.direction = unit(to_world(frame_from_z(area_emission_side(index, place.ng)), local));
     vec3 radiance = area_emission(index, place.position, place.ng, place.uv, e.direction);
     if (HAS(EFFECT_ALPHA)) radiance = radiance * light_alpha(light, place.position, place.ng, place.uv);
     e.power = radiance * (PI * sides / (place.pdf * light.emission.w));

@@ -19,10 +19,19 @@ struct LightSample {
 
 // ---- Area lights -----------------------------------------------------------------------------------------------------
 
+// The side of a one-sided light that emits. pbrt-v4's quadrics turn inside out under a mirroring transform where rays meet them, and
+// do not where they are sampled as lights. What scatters is as pbrt's rays see it; what emits is on the side that pbrt's lamps shine.
+FN vec3 area_emission_side(uint light, vec3 ng) {
+    if (!HAS(EFFECT_QUADRIC_LIGHTS) || lights[light].data.x == LIGHT_TRIANGLE) return ng;
+    uvec4 data = geometries[lights[light].ids.x].data;
+    bool mirrored = ((data.y & GEOMETRY_FLIP) != 0u) != ((data.y & GEOMETRY_REVERSED) != 0u);
+    return data.x >= GEOMETRY_SPHERE && mirrored ? -ng : ng;
+}
+
 // Radiance that leaves an area light at a point towards w.
 FN vec3 area_emission(uint light, vec3 position, vec3 ng, vec2 uv, vec3 w) {
     uvec4 data = lights[light].data;
-    if ((data.y & LIGHT_TWO_SIDED) == 0u && !(dot3(ng, w) > 0.0f)) return vec3(0.0f);
+    if ((data.y & LIGHT_TWO_SIDED) == 0u && !(dot3(area_emission_side(light, ng), w) > 0.0f)) return vec3(0.0f);
     vec3 radiance = vec3(lights[light].emission);
     if (HAS(EFFECT_LIGHT_TEXTURES) && data.z != NONE) {
         TextureContext context;
