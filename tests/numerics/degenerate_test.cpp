@@ -98,7 +98,8 @@ const std::vector<Case>& cases() {
          kSky + "Texture \"w\" \"float\" \"wrinkled\"\nMaterial \"diffuse\" \"texture displacement\" \"w\"\nShape "
                 "\"trianglemesh\" \"point3 P\" [ -1 -1 0 1 -1 0 0 1 0 ] \"point2 uv\" [ 0 0 0 0 0 0 ]\n",
          "", Expect::kLit},
-        {"a mesh far away", kSky + triangle("-1e17 -1e17 1e17 1e17 -1e17 1e17 0 1e17 1e17"), "", Expect::kLit},
+        {"a mesh far away", kSky + triangle("-1e11 -1e11 1e11 1e11 -1e11 1e11 0 1e11 1e11"), "", Expect::kLit},
+        {"a mesh somewhat too far away", kSky + triangle("-1e13 0 0 1e13 0 0 0 1e13 0"), "at most 1e+12"},
         {"a mesh too far away", kSky + triangle("-1e30 0 0 1e30 0 0 0 1e30 0"), "farther out than rays are traced"},
         {"a mesh scaled out of the world", kSky + "Scale 1e15 1e15 1e15\n" + triangle("-1e9 0 0 1e9 0 0 0 1e9 0"),
          "farther out than rays are traced"},
@@ -110,23 +111,24 @@ const std::vector<Case>& cases() {
              "ObjectEnd\nScale 1e-19 1e-19 1e-19\nObjectInstance \"o\"\n",
          "too small beside the scene"},
         {"a tiny instance",
-         kSky + "ObjectBegin \"o\"\n" + kSphere + triangle("0 0 0 1 0 0 0 1 0") +
+         kSky + kSphere + "ObjectBegin \"o\"\n" + kSphere + triangle("0 0 0 1 0 0 0 1 0") +
              "ObjectEnd\nScale 1e-15 1e-15 1e-15\nObjectInstance \"o\"\n",
          "", Expect::kLit},
         {"a sphere out of the world", kSky + "Shape \"sphere\" \"float radius\" 1e30\n",
          "farther out than rays are traced"},
-        {"a tiny mesh", kSky + triangle("-1e-30 0 0 1e-30 0 0 0 1e-30 0"), "", Expect::kLit},
+        {"a tiny scene", kSky + triangle("-1e-20 0 0 1e-20 0 0 0 1e-20 0"), "too small for rays"},
+        {"a tiny mesh", kSky + kSphere + triangle("-1e-30 0 0 1e-30 0 0 0 1e-30 0"), "", Expect::kLit},
         {"a tiny light",
          kSphere + "Translate 0 0 -2\nAreaLightSource \"diffuse\" \"float power\" 1\n" +
              triangle("-1e-25 0 0 1e-25 0 0 0 1e-25 0"),
          "", Expect::kFinite},
-        {"a tiny sphere", kSky + "Shape \"sphere\" \"float radius\" 1e-30\n", "", Expect::kLit},
+        {"a tiny sphere", kSky + kSphere + "Shape \"sphere\" \"float radius\" 1e-30\n", "", Expect::kLit},
         {"a tiny sphere of light",
          kSphere + "Translate 0 0 -2\nAreaLightSource \"diffuse\" \"float power\" 1\nShape \"sphere\" \"float radius\" "
                    "1e-20\n",
          "", Expect::kFinite},
         {"a huge sphere of light",
-         kSphere + "AreaLightSource \"diffuse\" \"bool twosided\" true\nShape \"sphere\" \"float radius\" 1e15\n", "",
+         kSphere + "AreaLightSource \"diffuse\" \"bool twosided\" true\nShape \"sphere\" \"float radius\" 1e11\n", "",
          Expect::kFinite},
         {"a sphere of a sliver", kSky + "Shape \"sphere\" \"float phimax\" 1e-20\n", "", Expect::kLit},
         // Numbers

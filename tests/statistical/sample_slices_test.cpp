@@ -47,8 +47,8 @@ class SampleSlices : public testing::TestWithParam<Case> {
     }
     static test::RenderSettings limited(uint32_t most, uint32_t& failures) {
         test::RenderSettings s = settings();
-        s.wrap = [most, &failures](std::unique_ptr<Device> device) -> std::unique_ptr<Device> {
-            return std::make_unique<test::LimitedDevice>(std::move(device), most, failures);
+        s.wrap = [most, &failures](std::shared_ptr<Device> device) -> std::shared_ptr<Device> {
+            return std::make_shared<test::LimitedDevice>(std::move(device), most, failures);
         };
         return s;
     }

@@ -17,7 +17,7 @@ namespace lampyris::test {
 // to be unfinished where it was to take more than `most`.
 class LimitedDevice final : public Device {
  public:
-    LimitedDevice(std::unique_ptr<Device> inner, uint32_t most, uint32_t& failures)
+    LimitedDevice(std::shared_ptr<Device> inner, uint32_t most, uint32_t& failures)
         : inner_(std::move(inner)), most_(most), failures_(failures) {}
 
     std::string backend() const override { return inner_->backend(); }
@@ -50,7 +50,7 @@ class LimitedDevice final : public Device {
     DeviceStatistics statistics() const override { return inner_->statistics(); }
 
  private:
-    std::unique_ptr<Device> inner_;
+    std::shared_ptr<Device> inner_;
     const uint32_t most_;
     uint32_t& failures_;
     std::map<const Kernel*, std::string> sampling_;

@@ -5,9 +5,17 @@
 
 #include <cmath>
 #include <filesystem>
+#include <map>
 
 namespace lampyris::test {
 namespace {
+
+std::shared_ptr<Device> shared_device(const std::string& backend) {
+    static std::map<std::string, std::shared_ptr<Device>> devices;
+    std::shared_ptr<Device>& device = devices[backend];
+    if (!device) device = create_device(backend, {});
+    return device;
+}
 
 // With seeds from the settings' on, one after the other: the scene is built once.
 std::vector<Rendered> render_description(SceneDescription description, const RenderSettings& settings,
@@ -16,6 +24,10 @@ std::vector<Rendered> render_description(SceneDescription description, const Ren
     options.resolution = settings.resolution;
     options.crop = settings.crop;
     BuiltScene built = build_scene(std::move(description), options, diagnostics);
+    if (settings.one_variant && settings.backend == "vulkan") {
+        built.scene.effects.ask(kernel::kAllEffects, "the test");
+        built.scene.record.counts.w = built.scene.effects.mask();
+    }
     PluginChoice choice;
     if (!settings.integrator.empty()) choice = parse_plugin_choice(settings.integrator);
     const ChosenIntegrator chosen = choose_integrator(built, choice, diagnostics);
@@ -24,7 +36,8 @@ std::vector<Rendered> render_description(SceneDescription description, const Ren
     DeviceOptions device_options;
     device_options.threads = settings.threads;
     device_options.settings = settings.device_settings;
-    std::unique_ptr<Device> device = create_device(settings.backend, device_options);
+    std::shared_ptr<Device> device =
+        settings.one_variant ? shared_device(settings.backend) : create_device(settings.backend, device_options);
     if (settings.wrap) device = settings.wrap(std::move(device));
     const DeviceSceneHandle device_scene = device->upload(built.scene);
     std::vector<Rendered> results;

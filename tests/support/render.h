@@ -25,10 +25,12 @@ struct RenderSettings {
     std::optional<std::string> sampler;  // in place of the scene's: "independent", "sobol"
     std::string integrator;              // "name:key=value"; empty: the scene's
     std::string photon_map = kDefaultPhotonMap;
+    // A device for all scenes that say so, and on Vulkan the kernel with all effects, whatever a scene asks for: it is compiled once.
+    bool one_variant = false;
     std::map<std::string, std::string> device_settings;
     std::optional<std::array<int, 4>> crop;
     uint32_t first_pass = 0;
-    std::function<std::unique_ptr<Device>(std::unique_ptr<Device>)> wrap;  // what to render on in place of the device
+    std::function<std::shared_ptr<Device>(std::shared_ptr<Device>)> wrap;  // what to render on in place of the device
     uint32_t slice = 0;  // passes per dispatch; 0: as the session decides
     std::function<void(const RenderProgress&, const Film&)> on_progress;  // RenderSession's
 };

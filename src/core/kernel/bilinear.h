@@ -117,8 +117,8 @@ FN void bilinear_fill(uint geometry, uint primitive, vec2 uv, INOUT(Surface) s) 
     vec3 dpdu = patch_dpdu(b, uv.y);
     vec3 dpdv = patch_dpdv(b, uv.x);
     vec3 normal = cross3(dpdu, dpdv);
-    if (!(length_squared(normal) > 0.0f)) normal = cross3(b.p11 - b.p00, b.p01 - b.p10);  // two corners coincide
-    float normal_length = length_of(normal);
+    if (!(max_component(abs(normal)) > 0.0f)) normal = cross3(b.p11 - b.p00, b.p01 - b.p10);  // two corners coincide
+    float normal_length = length_of_area(normal);
     s.ng = normal_length > 0.0f ? normal / normal_length : vec3(0.0f, 0.0f, 1.0f);
     // Change of the normal: derivative of the unit cross product, the mixed derivative being the patch's twist.
     s.dndu = vec3(0.0f);

@@ -12,7 +12,7 @@ FN vec3 direct_light(IN(Surface) s, IN(Frame) frame, IN(Bsdf) bsdf, vec3 wo, uin
     float density;
     vec3 f = bsdf_eval_pdf(bsdf, wo, wi, TRANSPORT_RADIANCE, density) * abs(wi.z);
     if (is_black(f)) return vec3(0.0f);
-    vec3 arriving = scene_transmittance(s, light.wi, light.distance, medium, rays);
+    vec3 arriving = scene_transmittance(s, light.wi, light.distance, light.end, medium, rays);
     if (is_black(arriving)) return vec3(0.0f);
     if (!weighted || light.is_delta != 0u) density = 0.0f;
     vec3 reflected = f * light.radiance * power_heuristic_over_pdf(light.pdf, density);

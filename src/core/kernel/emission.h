@@ -36,7 +36,7 @@ FN bool emit_from_area(uint index, float u_side, vec2 u_place, vec2 u_direction,
         sides = 2.0f;
         if (u_side < 0.5f) local.z = -local.z;
     }
-    e.direction = unit(to_world(frame_from_z(place.ng), local));
+    e.direction = unit(to_world(frame_from_z(area_emission_side(index, place.ng)), local));
     vec3 radiance = area_emission(index, place.position, place.ng, place.uv, e.direction);
     if (HAS(EFFECT_ALPHA)) radiance = radiance * light_alpha(light, place.position, place.ng, place.uv);
     e.power = radiance * (PI * sides / (place.pdf * light.emission.w));
@@ -48,7 +48,6 @@ FN bool emit_from_area(uint index, float u_side, vec2 u_place, vec2 u_direction,
 FN bool emit_from_point(uint index, vec2 u_place, vec2 u_direction, INOUT(Emission) e) {
     LightRecord light = lights[index];
     float pdf = pdf_uniform_sphere();
-    e.origin = vec3(light.v0);
     if (light.data.x == LIGHT_SPOT) {
         float one_minus_cos = 1.0f - light.v2.w;
         e.direction = to_world(frame_from_z(vec3(light.v1)), sample_uniform_cone(u_direction, one_minus_cos));
@@ -65,6 +64,7 @@ FN bool emit_from_point(uint index, vec2 u_place, vec2 u_direction, INOUT(Emissi
         e.direction = sample_uniform_sphere(u_direction);
     }
     e.direction = unit(e.direction);
+    e.origin = vec3(light.v0) + point_offset(vec3(light.v0), e.direction) * e.direction;
     e.power = point_light_intensity(light, e.direction) / (pdf * light.emission.w);
     e.medium = light_medium(index, e.direction, e.direction);
     return true;

@@ -5,8 +5,6 @@
 
 // How many masked or invisible surfaces a ray may pass before it is an error.
 CONST uint MAX_PASSED_SURFACES = 100000u;
-// Shadow rays stop short of the light by this share of their length (as pbrt's do).
-CONST float SHADOW_EPSILON = 1e-4f;
 
 // The triangle's point that the ray meets (Möller and Trumbore 1997 for the barycentrics), in the geometry set's space.
 FN void triangle_surface(uint geometry, uint primitive, vec3 o, vec3 d, INOUT(Surface) s) {
@@ -21,20 +19,39 @@ FN void triangle_surface(uint geometry, uint primitive, vec3 o, vec3 d, INOUT(Su
     vec3 e1 = p1 - p0;
     vec3 e2 = p2 - p0;
     vec3 n = cross3(e1, e2);
+    float n2 = length_squared(n);
+    float n_length = sqrt(n2);
     vec3 from = o - p0;
-    vec3 q = cross3(d, e2);
+    vec3 side1 = e1;
+    vec3 side2 = e2;
+    float unscale = 1.0f;
+    if (RARELY(!square_fits(n2))) {
+        // Products of up to four lengths follow: the longer edge becomes the unit.
+        float scale = scale_to_one(max(max_component(abs(e1)), max_component(abs(e2))));
+        unscale = 1.0f / scale;
+        side1 = scale * e1;
+        side2 = scale * e2;
+        from = scale * from;
+        n = cross3(side1, side2);
+        n_length = length_of_area(n);
+    }
+    vec3 q = cross3(d, side2);
     float det = -dot3(d, n);  // e1 . (d x e2)
-    vec3 r = cross3(from, e1);
+    vec3 r = cross3(from, side1);
     float inverse = det != 0.0f ? 1.0f / det : 0.0f;
     // Rounding may put the point just outside: back onto the triangle.
     float b1 = clamp(dot3(from, q) * inverse, 0.0f, 1.0f);
     float b2 = clamp(dot3(d, r) * inverse, 0.0f, 1.0f - b1);
     float b0 = 1.0f - b1 - b2;
-    s.distance = dot3(from, n) * inverse;
+    s.distance = dot3(from, n) * inverse * unscale;
     s.position = b0 * p0 + b1 * p1 + b2 * p2;
     s.error = gamma_bound(7.0f) * (abs(b0 * p0) + abs(b1 * p1) + abs(b2 * p2));
-    float n_length = length_of(n);
-    s.ng = n_length > 0.0f ? n * (1.0f / n_length) : -unit(d);
+    s.ng = -unit(d);
+    if (n_length > 0.0f) {
+        float n_inverse = 1.0f / n_length;
+        s.ng = n * n_inverse;
+        s.error += (triangle_plane_error(side1, side2, b1, b2, n_inverse) * unscale) * abs(s.ng);
+    }
 
     s.uv = vec2(0.0f);
     s.dpdu = vec3(0.0f);
@@ -64,7 +81,7 @@ FN void triangle_surface(uint geometry, uint primitive, vec3 o, vec3 d, INOUT(Su
             duv_inverse = 1.0f / duv_det;
             s.dpdu = (e1 * duv2.y - e2 * duv1.y) * duv_inverse;
             s.dpdv = (e2 * duv1.x - e1 * duv2.x) * duv_inverse;
-            has_uv_map = length_squared(cross3(s.dpdu, s.dpdv)) > 0.0f;
+            has_uv_map = max_component(abs(cross3(s.dpdu, s.dpdv))) > 0.0f;
         }
         if (!has_uv_map) {
             Frame frame = frame_from_z(s.ng);
@@ -210,19 +227,31 @@ FN bool intersect_scene(vec3 origin, vec3 direction, OUT(Surface) s, INOUT(uint)
 // In place of the medium in which a shadow ray starts: media on the way do not count.
 CONST uint MEDIA_IGNORED = 0xffffffffu;
 
-// shadow_ray where surfaces may let the ray pass: o is outside of the first one's rounding error.
-RARE_FN bool shadow_ray_through(vec3 start_o, vec3 direction, float distance, float start_t_max, uint start,
+// Turns the unit direction towards `end`, and returns how far away that is: 0 where it does not lie ahead any more, because
+// nothing but rounding errors was on the way.
+FN float aim_at(vec3 o, vec3 end, INOUT(vec3) direction) {
+    vec3 way = end - o;
+    if (!(dot3(way, direction) > 0.0f)) return 0.0f;
+    float distance = length_of(way);
+    direction = way * (1.0f / distance);
+    return distance;
+}
+
+// shadow_ray where surfaces may let the ray pass.
+RARE_FN bool shadow_ray_through(vec3 start_o, vec3 start_direction, float distance, vec3 end, uint start,
                                 OUT(vec3) transmittance, INOUT(uint) rays) {
     transmittance = vec3(1.0f);
     vec3 o = start_o;
-    float t_max = start_t_max;
+    vec3 direction = start_direction;
     bool absorbs = HAS(EFFECT_MEDIUM) && start != MEDIA_IGNORED;
     uint medium = start;
-    float left = distance;  // to the light itself, of which t_max ends short
+    float left = distance;
     for (uint i = 0u; i < MAX_PASSED_SURFACES; ++i) {
         Hit hit;
         Surface s;
         rays += 1u;
+        // Beyond each surface the ray starts a little aside of its line, and takes aim again.
+        float t_max = distance < INFINITE_DISTANCE ? aim_at(o, end, direction) : INFINITE_DISTANCE;
         bool found = t_max > 0.0f && trace_closest(o, direction, t_max, hit) && surface_at(hit, o, direction, s);
         if (!found) {
             if (absorbs) transmittance *= medium_transmittance(medium, max(left, 0.0f));
@@ -242,23 +271,21 @@ RARE_FN bool shadow_ray_through(vec3 start_o, vec3 direction, float distance, fl
             if (crosses) medium = medium_behind(s, direction, medium);
         }
         o = origin_beyond(s.position, s.way, direction);
-        if (distance < INFINITE_DISTANCE) {
-            t_max -= s.distance;
-            left -= s.distance;
-        }
+        if (distance < INFINITE_DISTANCE) left -= s.distance;
     }
     REPORT_UNFINISHED();
     return true;
 }
 
-// Whether anything opaque lies between o, outside of a surface, and a point `distance` away along the unit direction. If not,
-// `transmittance` is what masked surfaces and media on the way leave, `start` being the one in which the ray starts.
-FN bool shadow_ray(vec3 o, vec3 direction, float distance, uint start, OUT(vec3) transmittance, INOUT(uint) rays) {
-    float t_max = distance >= INFINITE_DISTANCE ? INFINITE_DISTANCE : distance * (1.0f - SHADOW_EPSILON);
+// Whether anything opaque lies between o, outside of a surface, and `end`, `distance` away along the unit direction and outside of
+// a surface, too, if there is one (shadow_end); INFINITE_DISTANCE has no end. If not, `transmittance` is what masked surfaces and
+// media on the way leave, `start` being the medium in which the ray starts.
+FN bool shadow_ray(vec3 o, vec3 direction, float distance, vec3 end, uint start, OUT(vec3) transmittance,
+                   INOUT(uint) rays) {
     if (HAS(EFFECT_ALPHA | EFFECT_INTERFACE) && RARELY(CALLED_FOR(EFFECT_ALPHA | EFFECT_INTERFACE))) {
         vec3 through;
         uint traced = rays;
-        bool occluded = shadow_ray_through(o, direction, distance, t_max, start, through, traced);
+        bool occluded = shadow_ray_through(o, direction, distance, end, start, through, traced);
         rays = traced;
         transmittance = through;
         return occluded;
@@ -266,22 +293,29 @@ FN bool shadow_ray(vec3 o, vec3 direction, float distance, uint start, OUT(vec3)
     rays += 1u;
     transmittance = vec3(1.0f);
     if (HAS(EFFECT_MEDIUM) && start != MEDIA_IGNORED) transmittance = medium_transmittance(start, distance);
-    return trace_occluded(o, direction, t_max);
+    vec3 aimed = direction;
+    float t_max = distance < INFINITE_DISTANCE ? aim_at(o, end, aimed) : INFINITE_DISTANCE;
+    return t_max > 0.0f && trace_occluded(o, aimed, t_max);
 }
 
-// How much of a point `distance` away along the unit direction a surface point sees, whatever media lie between.
+// How much a surface point sees of what lies `distance` away along the unit direction, whatever media lie between; the distance counts
+// from the point's rounding error on.
 FN float scene_openness(vec3 position, vec3 error, vec3 ng, vec3 direction, float distance, INOUT(uint) rays) {
     vec3 transmittance;
     vec3 o = offset_origin(position, error, ng, direction);
-    return shadow_ray(o, direction, distance, MEDIA_IGNORED, transmittance, rays) ? 0.0f : transmittance.x;
+    bool limited = distance < 1e18f;  // no two points of a scene are so far apart, and the square is a float
+    vec3 end = limited ? o + distance * direction : vec3(0.0f);
+    float reach = limited ? distance : INFINITE_DISTANCE;
+    return shadow_ray(o, direction, reach, end, MEDIA_IGNORED, transmittance, rays) ? 0.0f : transmittance.x;
 }
 
-// The share of light that comes from a point `distance` away along the unit direction to s, which was reached through `medium`.
-FN vec3 scene_transmittance(IN(Surface) s, vec3 direction, float distance, uint medium, INOUT(uint) rays) {
+// The share of light that comes to s from `end` (shadow_end), `distance` away along the unit direction. s was reached through
+// `medium`.
+FN vec3 scene_transmittance(IN(Surface) s, vec3 direction, float distance, vec3 end, uint medium, INOUT(uint) rays) {
     vec3 transmittance;
     uint start = medium_behind(s, direction, medium);
-    bool occluded =
-        shadow_ray(origin_beyond(s.position, s.way, direction), direction, distance, start, transmittance, rays);
+    vec3 o = origin_beyond(s.position, s.way, direction);
+    bool occluded = shadow_ray(o, direction, distance, end, start, transmittance, rays);
     return occluded ? vec3(0.0f) : transmittance;
 }
 

@@ -12,16 +12,26 @@ struct LightSample {
     vec3 radiance;   // arriving from there, if nothing is in between; delta lights: radiance / pdf is what counts
     float pdf;       // solid angle, times the probability of choosing the light; delta lights: the latter alone
     float distance;  // INFINITE_DISTANCE: the shadow ray leaves the scene
+    vec3 end;        // of the shadow ray, outside of the light's surface (shadow_end)
     uint is_delta;   // 1: no ray finds this light by chance; pdf may be a density all the same (LIGHT_PASSED)
     uint light;
 };
 
 // ---- Area lights -----------------------------------------------------------------------------------------------------
 
+// The side of a one-sided light that emits. pbrt-v4's quadrics turn inside out under a mirroring transform where rays meet them, and
+// do not where they are sampled as lights. What scatters is as pbrt's rays see it; what emits is on the side that pbrt's lamps shine.
+FN vec3 area_emission_side(uint light, vec3 ng) {
+    if (!HAS(EFFECT_QUADRIC_LIGHTS) || lights[light].data.x == LIGHT_TRIANGLE) return ng;
+    uvec4 data = geometries[lights[light].ids.x].data;
+    bool mirrored = ((data.y & GEOMETRY_FLIP) != 0u) != ((data.y & GEOMETRY_REVERSED) != 0u);
+    return data.x >= GEOMETRY_SPHERE && mirrored ? -ng : ng;
+}
+
 // Radiance that leaves an area light at a point towards w.
 FN vec3 area_emission(uint light, vec3 position, vec3 ng, vec2 uv, vec3 w) {
     uvec4 data = lights[light].data;
-    if ((data.y & LIGHT_TWO_SIDED) == 0u && !(dot3(ng, w) > 0.0f)) return vec3(0.0f);
+    if ((data.y & LIGHT_TWO_SIDED) == 0u && !(dot3(area_emission_side(light, ng), w) > 0.0f)) return vec3(0.0f);
     vec3 radiance = vec3(lights[light].emission);
     if (HAS(EFFECT_LIGHT_TEXTURES) && data.z != NONE) {
         TextureContext context;
@@ -93,6 +103,7 @@ FN bool sample_area_light(uint index, vec3 ref_p, vec2 u, INOUT(LightSample) s) 
     if (!found) return false;
     s.wi = shape.wi;
     s.distance = shape.distance;
+    s.end = shadow_end(shape.position, shape.offset, shape.ng, shape.wi, shape.distance);
     s.pdf = shape.pdf * light.emission.w;
     s.radiance = area_emission(index, shape.position, shape.ng, shape.uv, -shape.wi);
     if (HAS(EFFECT_ALPHA)) {
@@ -140,6 +151,7 @@ FN bool sample_point_light(uint index, vec3 ref_p, INOUT(LightSample) s) {
     if (!(d2 > 0.0f) || !is_finite(d2)) return false;
     s.distance = sqrt(d2);
     s.wi = to_light / s.distance;
+    s.end = shadow_end(vec3(light.v0), point_offset(vec3(light.v0), s.wi), s.wi, s.wi, s.distance);
     s.radiance = point_light_intensity(light, -s.wi) / d2;
     s.pdf = light.emission.w;
     s.is_delta = 1u;
@@ -160,6 +172,7 @@ FN bool light_sample(vec3 ref_p, uint u_choice, uvec2 u_place, OUT(LightSample) 
     s.radiance = vec3(0.0f);
     s.pdf = 0.0f;
     s.distance = INFINITE_DISTANCE;
+    s.end = vec3(0.0f);
     s.is_delta = 0u;
     uint count = scene[0].lights.x;
     s.light = NONE;

@@ -11,7 +11,8 @@ struct ShapeSample {
     float distance;
     float pdf;  // 1/sr
     vec3 position;
-    vec3 ng;  // unit geometric normal, oriented as Surface's
+    float offset;  // along the normal, to where a ray is clear of the rounding error of the surface
+    vec3 ng;       // unit geometric normal, oriented as Surface's
     vec2 uv;
 };
 
@@ -32,6 +33,16 @@ FN bool shape_sample_from_area(vec3 ref_p, float pdf_area, INOUT(ShapeSample) s)
     s.pdf = pdf_of_area(pdf_area, d2, cosine);
     return s.pdf > 0.0f && is_finite(s.pdf);
 }
+
+// Where a shadow ray ends that comes along wi from `distance` away to the light's surface at p: `offset` outside of it, as a ray that
+// starts there would be, and out of what the ray's own arithmetic rounds (its direction, its length and the tracer's distances), which
+// is relative to its length.
+CONST float SHADOW_ROUNDING = 16.0f * MACHINE_EPSILON;
+FN vec3 shadow_end(vec3 p, float offset, vec3 ng, vec3 wi, float distance) {
+    return origin_beyond(p, (offset + SHADOW_ROUNDING * distance) * ng, -wi);
+}
+// A light at a point, in a corner of the scene for instance, has no surface: it faces every ray.
+FN float point_offset(vec3 p, vec3 direction) { return way_out_length(p, MACHINE_EPSILON * abs(p), direction); }
 
 // A point on a light, chosen by area: where photons start.
 struct AreaSample {
@@ -60,8 +71,9 @@ FN float triangle_sampled_solid_angle(IN(LightRecord) light, vec3 ref_p, OUT(vec
     vec3 centre = (vec3(light.v0) + vec3(light.v1) + vec3(light.v2)) * (1.0f / 3.0f) - ref_p;
     float d2 = length_squared(centre);
     if (d2 > 4.0f * light.v1.w * light.v1.w) {
-        float volume = light.v0.w * dot3(centre, vec3(light.normal));
-        if (volume * volume < SPHERICAL_TRIANGLE_MIN * SPHERICAL_TRIANGLE_MIN * d2 * d2 * d2) return 0.0f;
+        float height = dot3(centre, vec3(light.normal));
+        float ratio = d2 * light.v2.w;  // so that no product leaves a float's range
+        if (height * height < SPHERICAL_TRIANGLE_MIN * SPHERICAL_TRIANGLE_MIN * d2 * (ratio * ratio)) return 0.0f;
     }
     a = vec3(light.v0) - ref_p;
     b = vec3(light.v1) - ref_p;
@@ -141,9 +153,11 @@ FN AreaSample sample_triangle_area(IN(LightRecord) light, vec2 u) {
     vec3 p0 = vec3(light.v0);
     vec3 p1 = vec3(light.v1);
     vec3 p2 = vec3(light.v2);
+    float off_plane = triangle_plane_error(p1 - p0, p2 - p0, barycentric.y, barycentric.z, 0.5f * light.v2.w);
     AreaSample s;
     s.position = barycentric.x * p0 + barycentric.y * p1 + barycentric.z * p2;
-    s.error = gamma_bound(7.0f) * (abs(barycentric.x * p0) + abs(barycentric.y * p1) + abs(barycentric.z * p2));
+    s.error = gamma_bound(7.0f) * (abs(barycentric.x * p0) + abs(barycentric.y * p1) + abs(barycentric.z * p2)) +
+              off_plane * abs(vec3(light.normal));
     s.ng = triangle_light_normal(light, barycentric);
     s.uv = triangle_light_uv(light, barycentric);
     s.pdf = light.v2.w;
@@ -155,6 +169,7 @@ FN bool sample_triangle_light(IN(LightRecord) light, vec3 ref_p, vec2 u, OUT(Sha
     vec3 e1 = vec3(light.v1) - p0;
     vec3 e2 = vec3(light.v2) - p0;
     s.uv = vec2(0.0f);
+    s.offset = uintBitsToFloat(light.ids.z);  // triangle_light (core/scene/area_lights.cpp)
     vec3 a;
     vec3 b;
     vec3 c;
@@ -240,7 +255,13 @@ FN float sphere_cone(vec4 params, vec3 ref_p) {
 // and the far one emits inwards.
 FN bool sphere_hides_its_inside(IN(GeometryRecord) g) {
     if (!HAS(EFFECT_ALPHA) || (g.ids.z == NONE && g.alpha.x >= 1.0f)) return true;
-    return (g.data.y & GEOMETRY_FLIP) == 0u && (lights[g.ids.y].data.y & LIGHT_TWO_SIDED) == 0u;
+    return (g.data.y & GEOMETRY_REVERSED) == 0u && (lights[g.ids.y].data.y & LIGHT_TWO_SIDED) == 0u;
+}
+
+// How much solid angle in the quadric's space a unit of solid angle is about a direction that the transform stretches so. Each
+// product stays near the scale's first power.
+FN float sphere_cone_stretch(IN(TransformRecord) m, float stretch) {
+    return abs(determinant_of(m.from0, m.from1, m.from2)) * stretch * stretch * stretch;
 }
 
 FN AreaSample sample_quadric_area(uint geometry, vec2 u) {
@@ -285,15 +306,17 @@ FN bool sample_quadric_light(uint geometry, vec3 ref_p, vec2 u, OUT(ShapeSample)
             s.ng = n / length_of(n);
             s.wi = set_w / stretch;
             s.distance = t * g.params.x * stretch;
-            s.position = ref_p + s.wi * s.distance;
-            s.pdf = pdf_uniform_cone(one_minus_cos_max) * abs(determinant_of(m.from0, m.from1, m.from2)) *
-                    (stretch * stretch * stretch);
+            vec3 error;
+            s.position = quadric_set_position(geometry, p, error);
+            s.offset = way_out_length(s.position, error, s.ng);
+            s.pdf = pdf_uniform_cone(one_minus_cos_max) * sphere_cone_stretch(m, stretch);
             if (HAS(EFFECT_LIGHT_TEXTURES) || HAS(EFFECT_ALPHA)) s.uv = quadric_uv(kind, g.params, p);
             return is_finite(s.pdf);
         }
     }
     AreaSample place = sample_quadric_area(geometry, u);
     s.position = place.position;
+    s.offset = way_out_length(place.position, place.error, place.ng);
     s.ng = place.ng;
     s.uv = place.uv;
     return shape_sample_from_area(ref_p, place.pdf, s);
@@ -307,8 +330,7 @@ FN float pdf_quadric_light(uint geometry, vec3 ref_p, vec3 position, vec3 ng, ve
         float one_minus_cos_max = sphere_cone(g.params, transform_point(m.from0, m.from1, m.from2, ref_p));
         if (one_minus_cos_max > 0.0f) {
             float stretch = 1.0f / length_of(transform_vector(m.from0, m.from1, m.from2, wi));
-            return pdf_uniform_cone(one_minus_cos_max) * abs(determinant_of(m.from0, m.from1, m.from2)) *
-                   (stretch * stretch * stretch);
+            return pdf_uniform_cone(one_minus_cos_max) * sphere_cone_stretch(m, stretch);
         }
     }
     vec3 p = transform_point(m.from0, m.from1, m.from2, position);
@@ -318,16 +340,18 @@ FN float pdf_quadric_light(uint geometry, vec3 ref_p, vec3 position, vec3 ng, ve
 
 // ---- Bilinear patches ------------------------------------------------------------------------------------------------
 
-// How much area a step in u and v covers, at the four corners; over a plane patch it varies bilinearly between them, so that
-// sampling (u, v) in proportion is uniform in area there.
+// How much area a step in u and v covers, at the four corners, up to a common factor; over a plane patch it varies bilinearly
+// between them, so that sampling (u, v) in proportion is uniform in area there.
 FN vec4 patch_stretch(IN(Patch) b) {
-    return vec4(length_of(cross3(b.p10 - b.p00, b.p01 - b.p00)), length_of(cross3(b.p10 - b.p00, b.p11 - b.p10)),
-                length_of(cross3(b.p11 - b.p01, b.p01 - b.p00)), length_of(cross3(b.p11 - b.p01, b.p11 - b.p10)));
+    vec4 areas = vec4(
+        length_of_area(cross3(b.p10 - b.p00, b.p01 - b.p00)), length_of_area(cross3(b.p10 - b.p00, b.p11 - b.p10)),
+        length_of_area(cross3(b.p11 - b.p01, b.p01 - b.p00)), length_of_area(cross3(b.p11 - b.p01, b.p11 - b.p10)));
+    return areas * scale_to_one(max(max(areas.x, areas.y), max(areas.z, areas.w)));
 }
 
 // Density in area at (u, v).
 FN float patch_pdf_area(IN(Patch) b, vec2 uv) {
-    float stretch = length_of(cross3(patch_dpdu(b, uv.y), patch_dpdv(b, uv.x)));
+    float stretch = length_of_area(cross3(patch_dpdu(b, uv.y), patch_dpdv(b, uv.x)));
     return stretch > 0.0f ? pdf_bilinear(uv, patch_stretch(b)) / stretch : 0.0f;
 }
 
@@ -348,6 +372,7 @@ FN AreaSample sample_bilinear_area(uint geometry, uint primitive, vec2 u) {
 FN bool sample_bilinear_light(uint geometry, uint primitive, vec3 ref_p, vec2 u, OUT(ShapeSample) s) {
     AreaSample place = sample_bilinear_area(geometry, primitive, u);
     s.position = place.position;
+    s.offset = way_out_length(place.position, place.error, place.ng);
     s.ng = place.ng;
     s.uv = place.uv;
     return shape_sample_from_area(ref_p, place.pdf, s);

@@ -16,6 +16,40 @@ FN bool surface_needs_uv() {
     return CALLED_FOR(EFFECT_TEXTURES | EFFECT_ALPHA | EFFECT_BUMP | EFFECT_ANISOTROPIC | EFFECT_LIGHT_TEXTURES);
 }
 
+// The length of way_out (math.h).
+FN float way_out_length(vec3 p, vec3 error, vec3 ng) {
+    return dot3(abs(ng), error + (4.0f * MACHINE_EPSILON) * abs(p));
+}
+
+// Squared lengths between these bounds have lost nothing to a float's range. Those of edges and distances always lie there (the host
+// sees to it), those of cross products of edges do not.
+CONST float LEAST_SQUARE = 1e-30f;
+CONST float LARGEST_SQUARE = 1e30f;
+FN bool square_fits(float x) { return x > LEAST_SQUARE && x < LARGEST_SQUARE; }
+
+// The power of two that brings x > 0 to between 1 and 2; at most 2^60, so that what else is scaled by it stays finite.
+FN float scale_to_one(float x) {
+    return uintBitsToFloat(min(0x7f000000u - (floatBitsToUint(x) & 0x7f800000u), 0x5d800000u));
+}
+
+// The length of a cross product, of any size.
+FN float length_of_area(vec3 v) {
+    float square = length_squared(v);
+    if (!RARELY(!square_fits(square))) return sqrt(square);
+    float scale = scale_to_one(max_component(abs(v)));
+    return length_of(scale * v) / scale;
+}
+
+// How far from a triangle's plane tracers may find its point p0 + b1 e1 + b2 e2, n being e1 x e2. They start from p0, of a normal whose
+// components are differences of products: rounded, it misses a point far from p0 by more than the point's own coordinates tell. Planes
+// across an axis are exact. Slivers have hardly a plane: an offset from them stays small beside their length.
+FN float triangle_plane_error(vec3 e1, vec3 e2, float b1, float b2, float n_inverse) {
+    vec3 products = abs(vec3(e1.y * e2.z, e1.z * e2.x, e1.x * e2.y)) + abs(vec3(e1.z * e2.y, e1.x * e2.z, e1.y * e2.x));
+    vec3 from_p0 = b1 * abs(e1) + b2 * abs(e2);
+    float most = 16.0f * (from_p0.x + from_p0.y + from_p0.z);
+    return gamma_bound(6.0f) * min(dot3(from_p0, products) * n_inverse, most);
+}
+
 // The derivative of a unit vector n = v / l, given that of v.
 FN vec3 unit_derivative(vec3 n, float l, vec3 dv) { return (dv - n * dot3(n, dv)) / l; }
 

@@ -77,6 +77,11 @@ Box set_bounds(const Scene& scene, const GeometrySet& set) {
     return box;
 }
 
+// Of rays within instances: Embree leaves out what lies farther out than 1.8e18.
+constexpr float kLargestRay = 0.5e18f;
+// A scene whose bounding sphere is as small as that is a point, and is not hit.
+constexpr float kNoRadius = 1e-30f;
+
 void refuse_distance(Diagnostics& diagnostics, Location where, const char* what) {
     diagnostics.error(where, fmt::format("the {} reaches farther out than rays are traced", what),
                       fmt::format("coordinates in the world are at most {:g}", kLargestCoordinate));
@@ -224,6 +229,11 @@ void build_shapes(BuildContext& context) {
         });
     }
     scene.record.bounds = bounding_sphere(scene);
+    if (scene.record.bounds.w > kNoRadius && scene.record.bounds.w < kSmallestScene)
+        context.diagnostics.error(
+            description.shapes.empty() ? description.instances.front().location : description.shapes.front().location,
+            "the scene is too small for rays to be traced",
+            fmt::format("the radius of its bounding sphere is at least {:g}", kSmallestScene));
     // Rays from anywhere in the scene, and from the camera, must be in range within each instance.
     const kernel::CameraRecord& camera = scene.record.camera;
     const glm::vec3 centre(scene.record.bounds), eye(camera.to0.w, camera.to1.w, camera.to2.w);
@@ -231,8 +241,7 @@ void build_shapes(BuildContext& context) {
     for (size_t i = 1; i < scene.instances.size(); ++i) {
         const kernel::TransformRecord& t = scene.instances[i].transform;
         for (const kernel::vec4& row : {t.from0, t.from1, t.from2}) {
-            if (glm::length(glm::vec3(row)) * std::max(reach, 1.0f) + std::abs(row.w) <= 0.5f * kLargestCoordinate)
-                continue;
+            if (glm::length(glm::vec3(row)) * std::max(reach, 1.0f) + std::abs(row.w) <= kLargestRay) continue;
             context.diagnostics.error(places[i], "the instance is too small beside the scene for rays to be traced",
                                       "a larger scale");
             break;
@@ -251,7 +260,7 @@ kernel::vec4 bounding_sphere(const Scene& scene) {
     }
     if (world.empty()) return {0.0f, 0.0f, 0.0f, 1.0f};
     const glm::dvec3 centre = 0.5 * (world.low + world.high);
-    return {glm::vec3(centre), float(std::max(glm::length(world.high - centre), 1e-30))};
+    return {glm::vec3(centre), float(std::max(glm::length(world.high - centre), double(kNoRadius)))};
 }
 
 }  // namespace lampyris

@@ -93,8 +93,10 @@ struct BuildContext {
 kernel::TransformRecord transform_record(const glm::mat4& to);
 // Whether a transform can be inverted, and the inverse be held in floats.
 bool invertible(const glm::mat4& to);
-// Farther out than this, squares of distances overflow, and tracers leave out what lies there (Embree: 1.8e18).
-constexpr float kLargestCoordinate = 1e18f;
+// Where images are right (tests/numerics/scale_test.cpp): tracers, Embree among them, form products of three lengths, which must
+// fit into a float.
+constexpr float kLargestCoordinate = 1e12f;
+constexpr float kSmallestScene = 1e-9f;  // radius of the bounding sphere
 bool swaps_handedness(const glm::mat4& m);
 
 // ---- Values that a texture may stand in for --------------------------------------------------------------------------

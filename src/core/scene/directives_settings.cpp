@@ -156,6 +156,7 @@ void Parser::camera(const Token& directive) {
         world_from_camera[i] = glm::inverse(state_.ctm[i]);
         scene_.camera.world_from_camera.matrix[i] = glm::mat4(world_from_camera[i]);
     }
+    places_.camera = glm::dvec3(world_from_camera[0][3]);
     define_coordinate_system("camera", world_from_camera);
     scene_.camera.medium = state_.exterior_medium;
 }

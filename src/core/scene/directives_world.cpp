@@ -94,6 +94,7 @@ void Parser::object_instance(const Token& directive) {
     instance.location = directive.location;
     instance.world_from_object = state_.transform();
     scene_.instances.push_back(instance);
+    places_.instances.push_back(state_.place());
 }
 
 void Parser::attribute(const Token& directive) {
@@ -184,6 +185,7 @@ void Parser::texture(const Token& directive) {
     if (const auto* earlier = names.define(texture.name, name_location, static_cast<uint32_t>(scene_.textures.size())))
         defined_twice(values + " texture", *earlier, name_location);
     scene_.textures.push_back(std::move(texture));
+    places_.textures.push_back(state_.place());
 }
 
 void Parser::make_named_medium(const Token& directive) {
@@ -226,6 +228,7 @@ void Parser::light_source(const Token& directive) {
     light.world_from_light = state_.transform();
     light.medium = state_.exterior_medium;
     scene_.lights.push_back(std::move(light));
+    places_.lights.push_back(state_.place());
 }
 
 void Parser::area_light_source(const Token& directive) {
@@ -246,6 +249,7 @@ void Parser::shape(const Token& directive) {
     shape.exterior_medium = state_.exterior_medium;
     if (object_ == kNone) {
         scene_.shapes.push_back(std::move(shape));
+        places_.shapes.push_back(state_.place());
         return;
     }
     if (shape.area_light != kNone) {

@@ -67,6 +67,7 @@ struct GraphicsState {
     uint32_t interior_medium = kNone, exterior_medium = kNone;  // entries of the table of media
     Defaults shape_defaults, light_defaults, material_defaults, medium_defaults, texture_defaults;
 
+    glm::dvec3 place() const { return glm::dvec3(ctm[0][3]); }
     AnimatedTransform transform() const { return {{glm::mat4(ctm[0]), glm::mat4(ctm[1])}}; }
 };
 

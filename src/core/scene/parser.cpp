@@ -225,6 +225,7 @@ SceneDescription Parser::finish() {
     if (!in_world_ && !diagnostics_->has_errors())
         diagnostics_->error(end_, "the scene ends before WorldBegin", "what is to be seen comes after WorldBegin");
     resolve_names();
+    recentre(scene_, places_);
     return std::move(scene_);
 }
 

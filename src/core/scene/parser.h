@@ -5,6 +5,7 @@
 #include "core/scene/file_text.h"
 #include "core/scene/graphics_state.h"
 #include "core/scene/parameter_parser.h"
+#include "core/scene/recentre.h"
 #include "core/scene/tokenizer.h"
 
 #include <optional>
@@ -114,6 +115,7 @@ class Parser {
     };
 
     SceneDescription scene_;
+    Places places_;
     Diagnostics* diagnostics_;
     OldFormat old_format_;
     ParameterParser parameter_parser_;

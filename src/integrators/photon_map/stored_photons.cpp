@@ -4,6 +4,7 @@
 #include "integrators/sppm/photon_host.h"
 
 #include <fmt/format.h>
+#include <glm/glm.hpp>
 
 #include <algorithm>
 #include <array>
@@ -22,7 +23,7 @@ StoredPhotons::StoredPhotons(RenderSession& session, uint32_t keep, uint32_t pat
     map_->prepare(consumer_);
     const glm::vec4 bounds = session.scene.record.bounds;
     // A little more than the sphere: what lies on it is in the scene.
-    const glm::vec3 extent(bounds.w * 1.001f);
+    const glm::vec3 extent = bounds.w * 1.001f + 1e-6f * glm::abs(glm::vec3(bounds));
     pass_.low = glm::vec4(glm::vec3(bounds) - extent, 0.0f);
     pass_.high = glm::vec4(glm::vec3(bounds) + extent, 0.0f);
     pass_.photons = {0, 0, stream, session.seed};
