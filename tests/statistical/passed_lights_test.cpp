@@ -1,6 +1,6 @@
 // Area lights of constant alpha 0: they emit, and no ray meets them, as in pbrt-v4.
 //
-// False alarms: 9e-7 a mean (support/rare_lights.h), 8 means a backend, fixed seeds.
+// False alarms: 9e-7 a mean (support/rare_lights.h), 8 means, fixed seeds.
 #include "support/build_text.h"
 #include "support/rare_lights.h"
 
@@ -57,9 +57,6 @@ TEST(PassedLight, IsToldByItsAlpha) {
 }
 
 TEST_P(PassedLights, SphereLightsTheFloorAndHidesNothing) {
-    const auto mean = [&](const std::string& text, const std::string& integrator, uint32_t passes) {
-        return mean_of_text_runs(text, settings_of(GetParam(), integrator, passes, 0), kRuns);
-    };
     // Through the lamp's near side comes what its far side sends inwards: twice as much of a lamp with two sides. One that is half
     // there, and seen from below it, adds half of the half that passes its near side.
     struct Lamp {
@@ -72,12 +69,12 @@ TEST_P(PassedLights, SphereLightsTheFloorAndHidesNothing) {
         SCOPED_TRACE(std::string(lamp.light) + lamp.alpha);
         const std::string text = floor_under(lamp.light, lamp.alpha, lamp.eye_height);
         const double expected = lamp.sides * floor_radiance();
-        expect_mean_of_runs(mean(text, "path:maxdepth=1", 32), expected, 0.0, 0.1);
+        expect_mean_of_runs(text, GetParam(), "path:maxdepth=1", 32, expected, 0.0, 0.1);
         // The disk of a look-up sees the mean over it.
-        expect_mean_of_runs(mean(text, "sppm:maxdepth=1,direct=photons,photonsperiteration=20000,radius=0.1", 1),
+        expect_mean_of_runs(text, GetParam(), "sppm:maxdepth=1,direct=photons,photonsperiteration=20000,radius=0.1", 1,
                             expected, 0.005, 0.1);
         if (lamp.sides > 1.0)
-            expect_mean_of_runs(mean(text, "photon_map:maxdepth=1,direct=photons,photons=20000,radius=0.1", 1),
+            expect_mean_of_runs(text, GetParam(), "photon_map:maxdepth=1,direct=photons,photons=20000,radius=0.1", 1,
                                 expected, 0.005, 0.1);
     }
 }

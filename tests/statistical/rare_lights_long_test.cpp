@@ -1,4 +1,4 @@
-// As rare_lights_test.cpp, with as many lights as a large scene has: 2 million. False alarms: 9e-7 a mean, 2 means a backend.
+// As rare_lights_test.cpp, with as many lights as a large scene has: 2 million. False alarms: 9e-7 a mean, 2 means.
 #include "support/rare_lights.h"
 
 namespace lampyris::test {
@@ -11,13 +11,9 @@ INSTANTIATE_TEST_SUITE_P(Backends, ManyRareLights, testing::ValuesIn(usable_back
 TEST_P(ManyRareLights, ALampInTwoMillionPiecesIsTheLamp) {
     const double expected = mean_wall_radiance();
     const std::string text = lamp_in_pieces(1024);
-    expect_mean_of_runs(mean_of_text_runs(text, settings_of(GetParam(), "path:maxdepth=1", 128, 0), kRuns), expected,
-                        0.0, 0.1);
-    expect_mean_of_runs(
-        mean_of_text_runs(
-            text, settings_of(GetParam(), "sppm:maxdepth=1,direct=photons,photonsperiteration=100000,radius=0.3", 1, 0),
-            kRuns),
-        expected, 0.01, 0.15);
+    expect_mean_of_runs(text, GetParam(), "path:maxdepth=1", 128, expected, 0.0, 0.1);
+    expect_mean_of_runs(text, GetParam(), "sppm:maxdepth=1,direct=photons,photonsperiteration=100000,radius=0.3", 1,
+                        expected, 0.01, 0.15);
 }
 
 }  // namespace

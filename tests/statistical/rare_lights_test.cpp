@@ -1,6 +1,6 @@
 // Light whose share of all samples is below the step of a float reaches the picture all the same.
 //
-// False alarms: 9e-7 a mean (support/rare_lights.h), 6 means a backend, fixed seeds.
+// False alarms: 9e-7 a mean (support/rare_lights.h), 6 means, fixed seeds.
 #include "core/image/image_io.h"
 #include "support/rare_lights.h"
 
@@ -19,15 +19,10 @@ TEST_P(RareLights, ALampInPiecesIsTheLamp) {
     for (const int n : {8, 128}) {
         SCOPED_TRACE(n);
         const std::string text = lamp_in_pieces(n);
-        expect_mean_of_runs(mean_of_text_runs(text, settings_of(GetParam(), "path:maxdepth=1", 128, 0), kRuns),
-                            expected, 0.0, 0.1);
+        expect_mean_of_runs(text, GetParam(), "path:maxdepth=1", 128, expected, 0.0, 0.1);
         // A disk of radius 0.3 sees the mean over it; the curvature of the radiance is worth less than 1 %.
-        expect_mean_of_runs(
-            mean_of_text_runs(
-                text,
-                settings_of(GetParam(), "sppm:maxdepth=1,direct=photons,photonsperiteration=100000,radius=0.3", 1, 0),
-                kRuns),
-            expected, 0.01, 0.15);
+        expect_mean_of_runs(text, GetParam(), "sppm:maxdepth=1,direct=photons,photonsperiteration=100000,radius=0.3", 1,
+                            expected, 0.01, 0.15);
     }
 }
 
@@ -46,12 +41,10 @@ TEST_P(RareLights, ATexelTakesNoLightFromTheSky) {
         file +
         "\"\nMaterial \"diffuse\" \"rgb reflectance\" [ 1 1 1 ]\n"
         "Shape \"trianglemesh\" \"integer indices\" [ 0 1 2 0 2 3 ] \"point3 P\" [ -1 -1 0 1 -1 0 1 1 0 -1 1 0 ]\n";
-    const auto runs = [&](const std::string& integrator, uint32_t passes) {
-        return mean_of_text_runs(text, settings_of(GetParam(), integrator, passes, 0), kRuns);
-    };
-    expect_mean_of_runs(runs("path:maxdepth=1", 16), 1.0, 0.0, 0.03);
-    expect_mean_of_runs(runs("sppm:maxdepth=1,direct=photons,photonsperiteration=100000,radius=0.2", 1), 1.0, 0.0, 0.2);
-    expect_mean_of_runs(runs("photon_map:maxdepth=1,direct=photons,photons=100000,radius=0.2", 1), 1.0, 0.0, 0.2);
+    expect_mean_of_runs(text, GetParam(), "path:maxdepth=1", 16, 1.0, 0.0, 0.03);
+    for (const char* integrator : {"sppm:maxdepth=1,direct=photons,photonsperiteration=100000,radius=0.2",
+                                   "photon_map:maxdepth=1,direct=photons,photons=100000,radius=0.2"})
+        expect_mean_of_runs(text, GetParam(), integrator, 1, 1.0, 0.0, 0.2);
 }
 
 }  // namespace
