@@ -1,4 +1,5 @@
-// Direct light at the window's range of hit points, which stay: sampled anew in every pass, where an eye path that is followed once would sample it once.
+// Direct light at the window's range of hit points, which stay: sampled anew in every pass, where an eye path that is followed once
+// would sample it once.
 // clang-format off
 #define KERNEL_CPU_VARIANTS kAllEffects, kTexturedEffects, kGlassEffects
 // clang-format on
@@ -38,14 +39,14 @@ KERNEL(ppm_direct) {
         Frame frame;
         Bsdf bsdf = material_bsdf(s, -direction, frame);
         // The points of all passes are one stratified set.
-        Sampler numbers =
-            sampler_begin(y * scene[0].camera.film.x + x, pass * points + point, w.samples.z ^ DIRECT_STREAM, w.samples.w);
+        Sampler numbers = sampler_begin(y * scene[0].camera.film.x + x, pass * points + point,
+                                        w.samples.z ^ DIRECT_STREAM, w.samples.w);
         // A light without extent is found in the same direction again.
         bsdf.walk = hash_combine(numbers.key, numbers.index);
-        float u_light = 0.0f;
-        if (light_choice_needs_number()) u_light = sample_1d_at(numbers, 0u);
+        uint u_light = 0u;
+        if (light_choice_needs_number()) u_light = sample_bits_1d_at(numbers, 0u);
         vec3 arriving = direct_light(s, frame, bsdf, to_local(frame, -direction), hit.more.z, u_light,
-                                     sample_2d_at(numbers, 1u), false, rays);
+                                     sample_bits_2d_at(numbers, 1u), false, rays);
         vec3 radiance = vec3(ways[at]) + vec3(hit.throughput) * arriving;
         hits[at].radiance = vec4(radiance.x, radiance.y, radiance.z, hit.radiance.w);
     }
