@@ -1,5 +1,6 @@
 // lampyris describe SCENE: what the scene calls for, who asks for it, and what it costs.
 #include "commands/command.h"
+#include "commands/console.h"
 #include "core/error.h"
 #include "core/scene/load.h"
 
@@ -142,7 +143,7 @@ void print_json(const LoadedScene& loaded) {
 
 int describe(const DescribeOptions& options) {
     const LoadedScene loaded = load_scene(options.scene, {}, options.skip_unsupported);
-    for (const std::string& warning : loaded.warnings) fmt::print(stderr, "{}\n", warning);
+    for (const std::string& warning : loaded.warnings) tell("{}\n", warning);
     if (options.json)
         print_json(loaded);
     else

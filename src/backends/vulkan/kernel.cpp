@@ -1,6 +1,7 @@
 #include "backends/vulkan/kernel.h"
 
 #include "core/error.h"
+#include "core/watch.h"
 
 #include <fmt/format.h>
 
@@ -149,6 +150,7 @@ double VulkanKernel::run(const SceneBindings& scene, std::span<const KernelBindi
     if (chunk_ == 0) chunk_ = kFirstChunk;
     double seconds = 0;
     for (uint32_t done = 0; done < count;) {
+        check_cancelled();
         const uint32_t piece = std::min({count - done, chunk_, most});
         const double spent = dispatch(begin + done, piece);
         seconds += spent;
