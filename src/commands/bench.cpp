@@ -1,5 +1,6 @@
 // lampyris bench photon-maps: what each photon-query structure costs, beside the memory traffic that none can avoid.
 #include "commands/command.h"
+#include "commands/console.h"
 #include "commands/photon_bench.h"
 #include "commands/render_options.h"
 #include "core/device.h"
@@ -139,7 +140,7 @@ int bench(const BenchOptions& options) {
                         if (!options.json) print_row(row);
                     } catch (const MachineError& error) {
                         // Some structures need more memory than others, or what a device lacks: the rest goes on.
-                        fmt::print(stderr, "{} {} {} {}: {}\n", backend, distribution, count, structure, error.what());
+                        tell("{} {} {} {}: {}\n", backend, distribution, count, structure, error.what());
                         failed.push_back({{"structure", structure},
                                           {"backend", backend},
                                           {"points", count},

@@ -1,5 +1,6 @@
 // lampyris describe SCENE: what the scene calls for, who asks for it, and what it costs.
 #include "commands/command.h"
+#include "commands/console.h"
 #include "core/error.h"
 #include "core/pbrt_integrators.h"
 #include "core/scene/load.h"
@@ -149,7 +150,7 @@ int describe(const DescribeOptions& options) {
     LoadedScene loaded = load_scene(options.scene, {}, options.skip_unsupported);
     for (std::string& note : integrator_notes(loaded.settings.integrator, loaded.scene, *loaded.sources))
         loaded.scene.notes.push_back(std::move(note));
-    for (const std::string& warning : loaded.warnings) fmt::print(stderr, "{}\n", warning);
+    for (const std::string& warning : loaded.warnings) tell("{}\n", warning);
     if (options.json)
         print_json(loaded);
     else

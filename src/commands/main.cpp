@@ -1,5 +1,6 @@
 // The lampyris program: finds the subcommand, and turns what it throws into a message and an exit code.
 #include "commands/command.h"
+#include "commands/console.h"
 #include "core/error.h"
 #include "core/version.h"
 
@@ -11,6 +12,7 @@
 #include <cstring>
 #include <new>
 #include <string>
+#include <system_error>
 #include <vector>
 
 namespace lampyris {
@@ -75,8 +77,12 @@ int report(const std::string& message, ExitCode code) {
     std::fflush(stdout);
     // What libraries and files have to say does not know that it is one.
     const bool says_so = message.find("error: ") != std::string::npos;
-    fmt::print(stderr, "{}{}\n", says_so ? "" : "lampyris: error: ", message);
+    tell_last(fmt::format("{}{}\n", says_so ? "" : "lampyris: error: ", message));
     return int(code);
+}
+
+std::string unexpected(const std::exception& error) {
+    return fmt::format("lampyris: error: {} (this should not have happened: please report it)", error.what());
 }
 
 }  // namespace
@@ -84,15 +90,19 @@ int report(const std::string& message, ExitCode code) {
 
 int main(int argc, char** argv) {
     using namespace lampyris;
+    prepare_console();
     try {
         return run_command_line(argc, argv);
     } catch (const Error& error) {
         return report(error.what(), error.code());
+    } catch (const std::system_error& error) {
+        // What commands print by fmt::print throws where it does not arrive.
+        if (std::ferror(stdout) == 0) return report(unexpected(error), ExitCode::kMachineCannot);
+        return report(fmt::format("cannot write to standard output: {}", error.code().message()),
+                      ExitCode::kMachineCannot);
     } catch (const std::bad_alloc&) {
         return report("lampyris: error: out of memory", ExitCode::kMachineCannot);
     } catch (const std::exception& error) {
-        return report(
-            fmt::format("lampyris: error: {} (this should not have happened: please report it)", error.what()),
-            ExitCode::kMachineCannot);
+        return report(unexpected(error), ExitCode::kMachineCannot);
     }
 }

@@ -1,11 +1,12 @@
 #include "commands/progress.h"
 
+#include "commands/console.h"
+
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace lampyris {
 
@@ -57,15 +58,14 @@ void ProgressDisplay::show(const RenderProgress& progress) {
     if (terminal_) {
         constexpr int kWidth = 20;
         const int filled = static_cast<int>(std::lround(share * kWidth));
-        fmt::print(stderr, "\r\033[K[{:#<{}}{:-<{}}] {}{}", "", filled, "", kWidth - filled, line,
-                   progress.finished ? "\n" : "");
-        std::fflush(stderr);
+        tell_in_place(
+            fmt::format("[{:#<{}}{:-<{}}] {}{}", "", filled, "", kWidth - filled, line, progress.finished ? "\n" : ""));
         return;
     }
     // Ten seconds apart at least, so that a log stays short.
     if (!progress.finished && progress.wall_s - last_plain_s_ < 10.0) return;
     last_plain_s_ = progress.wall_s;
-    fmt::print(stderr, "{}\n", line);
+    tell("{}\n", line);
 }
 
 }  // namespace lampyris

@@ -1,5 +1,8 @@
 // lampyris render: a scene in, images and their cost out.
 #include "commands/command.h"
+#include "commands/compile_display.h"
+#include "commands/console.h"
+#include "commands/interrupt.h"
 #include "commands/progress.h"
 #include "commands/render_options.h"
 #include "core/file.h"
@@ -10,6 +13,7 @@
 #include "core/plugin.h"
 #include "core/scene/build.h"
 #include "core/statistics.h"
+#include "core/watch.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -59,26 +63,25 @@ std::vector<std::string> choose_outputs(const RenderOptions& options, const Scen
 }
 
 void print_summary(const RunRecord& run, const std::vector<std::string>& outputs) {
-    fmt::print("{}: {}, {} passes, {} ({} in all), {:.2f} Mrays/s on {}\n", run.scene, run.integrator,
-               run.progress.passes, duration_text(run.progress.wall_s), duration_text(run.total_s),
-               run.progress.wall_s > 0.0 ? double(run.film.rays) / run.progress.wall_s * 1e-6 : 0.0, run.backend);
-    fmt::print("{}\n", ProgressDisplay::error_text(run.progress));
+    print("{}: {}, {} passes, {} ({} in all), {:.2f} Mrays/s on {}\n", run.scene, run.integrator, run.progress.passes,
+          duration_text(run.progress.wall_s), duration_text(run.total_s),
+          run.progress.wall_s > 0.0 ? double(run.film.rays) / run.progress.wall_s * 1e-6 : 0.0, run.backend);
+    print("{}\n", ProgressDisplay::error_text(run.progress));
     if (!run.progress.unstable.empty())
-        fmt::print("the error estimate is unstable, the true error may be much larger: {}\n", run.progress.unstable);
+        print("the error estimate is unstable, the true error may be much larger: {}\n", run.progress.unstable);
     if (run.film.non_finite > 0)
-        fmt::print(stderr,
-                   "warning: {} samples were not finite, or too large to be added to the others, and are left out; the "
-                   "first one is sample {} of pixel ({}, {}): look at it with --replay {},{},{}\n",
-                   run.film.non_finite, run.film.first_non_finite[2], run.film.first_non_finite[0],
-                   run.film.first_non_finite[1], run.film.first_non_finite[0], run.film.first_non_finite[1],
-                   run.film.first_non_finite[2]);
+        tell(
+            "warning: {} samples were not finite, or too large to be added to the others, and are left out; the first one is "
+            "sample {} of pixel ({}, {}): look at it with --replay {},{},{}\n",
+            run.film.non_finite, run.film.first_non_finite[2], run.film.first_non_finite[0],
+            run.film.first_non_finite[1], run.film.first_non_finite[0], run.film.first_non_finite[1],
+            run.film.first_non_finite[2]);
     if (run.film.unknown_errors > 0)
-        fmt::print(
-            stderr,
+        tell(
             "warning: the error of {} pixels is not known, since squares of their radiance are beyond the range of a "
             "float: scale the lights down, and the exposure up\n",
             run.film.unknown_errors);
-    for (const std::string& output : outputs) fmt::print("wrote {}\n", output);
+    for (const std::string& output : outputs) print("wrote {}\n", output);
 }
 
 // One sample of one pixel, alone: for debugging, and for comparing backends.
@@ -95,11 +98,12 @@ void print_replay(const RenderSession& session, const RenderOptions& options) {
                                          {"normal", {p.normal.x, p.normal.y, p.normal.z}},
                                          {"albedo", {p.albedo.x, p.albedo.y, p.albedo.z}},
                                          {"depth", p.squares.w}};
-    fmt::print("{}\n", json.dump(2));
+    print("{}\n", json.dump(2));
 }
 
 int render(const RenderOptions& options) {
     const Clock::time_point program_start = Clock::now();
+    InterruptWatch interrupts(options.outputs);
     RunRecord run;
     auto sources = std::make_shared<Sources>();
     Diagnostics diagnostics(*sources);
@@ -110,9 +114,9 @@ int render(const RenderOptions& options) {
     BuiltScene built = build_scene(std::move(description), options.build, diagnostics);
     ChosenIntegrator chosen = choose_integrator(options, built, diagnostics);
     if (!options.quiet)
-        for (const std::string& warning : diagnostics.warnings()) fmt::print(stderr, "{}\n", warning);
+        for (const std::string& warning : diagnostics.warnings()) tell("{}\n", warning);
     if (!options.quiet && !diagnostics.has_errors())
-        for (const std::string& note : built.scene.notes) fmt::print(stderr, "note: {}\n", note);
+        for (const std::string& note : built.scene.notes) tell("note: {}\n", note);
     diagnostics.throw_if_errors();
     built.scene.unsupported = diagnostics.unsupported_list();
     run.scene_s = seconds_since(scene_start);
@@ -125,6 +129,7 @@ int render(const RenderOptions& options) {
         built.settings.crop = {x, y, x + 1, y + 1};
     }
     const std::vector<std::string> outputs = choose_outputs(options, built.settings);
+    interrupts.set_outputs(outputs);
     for (const std::string& output : outputs) check_image_output(output, options.write);
     if (!options.statistics_file.empty()) check_writable(options.statistics_file);
     std::optional<std::vector<float>> reference;
@@ -140,6 +145,7 @@ int render(const RenderOptions& options) {
         reference = std::move(image.pixels);
     }
 
+    const CompileDisplay compile_display(options.quiet);
     const std::unique_ptr<Device> device = create_device(options.backend, options.device);
     const DeviceSceneHandle device_scene = device->upload(built.scene);
     Film film(*device, built.scene, crop);
@@ -159,6 +165,7 @@ int render(const RenderOptions& options) {
     if (options.replay) session.start_at(uint64_t((*options.replay)[2]));
     ProgressDisplay display(options.quiet || options.replay.has_value(), limits);
     session.on_progress = [&](const RenderProgress& progress, const Film& current) {
+        if (!options.replay) interrupts.image_begins();
         ConvergencePoint point{progress.wall_s,
                                progress.passes,
                                progress.estimated_error,
@@ -169,8 +176,11 @@ int render(const RenderOptions& options) {
         run.convergence.push_back(point);
         display.show(progress);
     };
-    install_interrupt_handler();
-    chosen.integrator->render(session);
+    try {
+        chosen.integrator->render(session);
+    } catch (const Cancelled&) {
+        session.pass_was_cancelled();
+    }
 
     film.download();
     if (options.replay) {
@@ -207,8 +217,8 @@ int render(const RenderOptions& options) {
     for (const std::string& output : outputs) {
         const WriteResult written = write_image(output, image, options.write);
         if (written.clamped > 0)
-            fmt::print(stderr, "warning: {}: {} numbers were larger than a half float holds and were cut to 65504\n",
-                       output, written.clamped);
+            tell("warning: {}: {} numbers were larger than a half float holds and were cut to 65504\n", output,
+                 written.clamped);
     }
     if (!options.statistics_file.empty())
         write_file_atomically(options.statistics_file, statistics_json(run, built.scene).dump(2) + "\n");

@@ -1,12 +1,11 @@
 #include "core/render_session.h"
 
 #include "core/sample_slices.h"
+#include "core/watch.h"
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <cmath>
-#include <csignal>
 #include <limits>
 
 namespace lampyris {
@@ -14,21 +13,7 @@ namespace {
 
 constexpr double kLookSeconds = 2.0;
 
-std::atomic<bool> interrupt_flag{false};
-
-extern "C" void on_interrupt(int signal) {
-    interrupt_flag.store(true);
-    std::signal(signal, SIG_DFL);
-}
-
 }  // namespace
-
-void install_interrupt_handler() {
-    std::signal(SIGINT, &on_interrupt);
-    std::signal(SIGTERM, &on_interrupt);
-}
-
-bool interrupt_requested() { return interrupt_flag.load(); }
 
 RenderSession::RenderSession(Device& device_, const Scene& scene_, DeviceSceneHandle device_scene_, Film& film_,
                              BudgetLimits limits)

@@ -72,6 +72,8 @@ class RenderSession {
     void start_at(uint64_t first) { first_pass_ = first; }
     const RenderProgress& progress() const { return progress_; }
     bool interrupted() const { return interrupted_; }
+    // Cancelled came out of a pass: what is in the film counts, the pass does not.
+    void pass_was_cancelled() { interrupted_ = true; }
 
     // Seconds of a phase ("eye_pass", "photon_tracing", ...).
     void add_phase(const std::string& name, double seconds) { phases_[name] += seconds; }
@@ -93,9 +95,5 @@ class RenderSession {
     double last_look_s_ = 0.0;
     bool interrupted_ = false;
 };
-
-// Ctrl-C: the first one lets the rendering end after its slice, and what is done is written; the second one ends the process.
-void install_interrupt_handler();
-bool interrupt_requested();
 
 }  // namespace lampyris

@@ -3,6 +3,7 @@
 #include "core/device.h"
 #include "core/error.h"
 #include "core/kernel_registry.h"
+#include "core/watch.h"
 
 #include <embree3/rtcore_config.h>
 #include <fmt/format.h>
@@ -154,6 +155,7 @@ class CpuDevice final : public Device {
             tbb::parallel_for(
                 tbb::blocked_range<uint64_t>(begin, uint64_t(begin) + count, block),
                 [&](const tbb::blocked_range<uint64_t>& range) {
+                    check_cancelled();
                     const FlushDenormals flush;
                     CpuInvocation part = call;
                     part.begin = uint32_t(range.begin());

@@ -4,6 +4,7 @@
 #include "backends/vulkan/scene.h"
 #include "core/error.h"
 #include "core/scene/scene.h"
+#include "core/watch.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -102,6 +103,7 @@ class VulkanDevice final : public Device {
 
     KernelHandle compile(std::string_view file, uint32_t effects) override {
         const auto start = Clock::now();
+        const CompileNotice notice(file);
         ShaderOptions options = shader_options_;
         options.effects = specialise_ ? effects : kernel::kAllEffects;
         CompiledShader shader = compile_shader(file, options, cache_);

@@ -1,9 +1,12 @@
 #include "backends/vulkan/kernel.h"
 
+#include "core/watch.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <stdexcept>
 
 namespace lampyris::vulkan {
@@ -31,7 +34,8 @@ bool VulkanKernel::uses_scene() const {
                        [](const auto& b) { return b.set == 0 && b.binding != kUnfinishedBinding; });
 }
 
-KernelPipeline& VulkanKernel::pipeline(const SceneBindings& scene, std::span<const KernelBinding> buffers) const {
+KernelPipeline& VulkanKernel::pipeline(const SceneBindings& scene, std::span<const KernelBinding> buffers,
+                                       bool tell) const {
     std::vector<KernelBinding> given(bindings_.size());
     Addressed addressed(bindings_.size());
     for (size_t i = 0; i < bindings_.size(); ++i) {
@@ -46,6 +50,8 @@ KernelPipeline& VulkanKernel::pipeline(const SceneBindings& scene, std::span<con
     }
     std::unique_ptr<KernelPipeline>& kept = pipelines_[addressed];
     const bool is_new = !kept;
+    std::optional<CompileNotice> notice;
+    if (is_new && tell) notice.emplace(file_);
     if (is_new)
         kept = std::make_unique<KernelPipeline>(context_, file_, shader_.spirv, bindings_, addressed, local_size_);
     kept->bind(given);
@@ -58,13 +64,14 @@ VulkanKernel::Spent VulkanKernel::run(const SceneBindings& scene, std::span<cons
     Spent spent;
     const auto start = std::chrono::steady_clock::now();
     const size_t pipelines = pipelines_.size();
-    KernelPipeline& chosen = pipeline(scene, buffers);
+    KernelPipeline& chosen = pipeline(scene, buffers, true);
     if (pipelines_.size() > pipelines)
         spent.compile_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const auto most = static_cast<uint32_t>(
         std::min<uint64_t>(uint64_t(context_->can.max_groups) * local_size_, UINT32_MAX - local_size_));
     if (chunk_ == 0) chunk_ = kFirstChunk;
     for (uint32_t done = 0; done < count;) {
+        check_cancelled();
         const uint32_t piece = std::min({count - done, chunk_, most});
         const double seconds = chosen.dispatch(begin + done, piece);
         spent.kernel_s += seconds;
@@ -82,7 +89,7 @@ void VulkanKernel::prepare(const SceneBindings& scene, vk::Buffer anything) cons
     SceneBindings stand_in = scene;
     for (KernelBinding& buffer : stand_in.buffers) buffer = {anything, {}, 0};
     const std::vector<KernelBinding> buffers(64, KernelBinding{anything, {}, 0});
-    pipeline(stand_in, buffers);
+    pipeline(stand_in, buffers, false);  // whoever asked for the kernel tells
 }
 
 }  // namespace lampyris::vulkan

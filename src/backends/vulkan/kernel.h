@@ -41,8 +41,8 @@ class VulkanKernel final : public Kernel {
     bool uses_scene() const;
 
  private:
-    // Compiled, and with its buffers bound.
-    KernelPipeline& pipeline(const SceneBindings& scene, std::span<const KernelBinding> buffers) const;
+    // Compiled, and with its buffers bound; `tell`: of a compilation.
+    KernelPipeline& pipeline(const SceneBindings& scene, std::span<const KernelBinding> buffers, bool tell) const;
 
     std::shared_ptr<Context> context_;
     std::string file_;
