@@ -1,6 +1,7 @@
 #include "commands/progress.h"
 
 #include "commands/console.h"
+#include "core/text.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -42,19 +43,55 @@ double ProgressDisplay::share_done(const RenderProgress& progress) const {
     if (limits_.passes)
         share = std::max(share, double(progress.passes) / double(std::max<uint64_t>(1, *limits_.passes)));
     if (limits_.seconds) share = std::max(share, progress.wall_s / *limits_.seconds);
-    if (limits_.target_error && progress.estimated_error > 0.0)
+    // How long an estimate stays unstable, nobody knows.
+    const bool counts = progress.unstable.empty() || limits_.accept_unstable;
+    if (limits_.target_error && progress.estimated_error > 0.0 && counts)
         share = std::max(share, *limits_.target_error / progress.estimated_error);
     return progress.finished ? 1.0 : std::clamp(share, 0.0, 1.0);
 }
 
+std::string ProgressDisplay::target_text(const RenderProgress& progress) {
+    switch (progress.target) {
+        case TargetState::kNone: return {};
+        case TargetState::kAbove: return "the target error was not reached";
+        case TargetState::kUnknown: return "the target error was not reached: the error is not known";
+        case TargetState::kBelowButUnstable:
+            return "the target error was not reached: the estimate is below it, but unstable";
+        case TargetState::kReached:
+            return progress.unstable.empty() ? "the target error was reached"
+                                             : "the target error was reached by an unstable estimate";
+    }
+    return {};
+}
+
+// Rendering that goes on past its target says so once; where nothing else ends it, even if it is to be quiet.
+void ProgressDisplay::note_unstable_target(const RenderProgress& progress) {
+    const bool endless = !limits_.passes && !limits_.seconds;
+    const bool unknown = progress.target == TargetState::kUnknown;
+    const bool stuck = unknown || progress.target == TargetState::kBelowButUnstable;
+    if (noted_ || progress.finished || !stuck || (quiet_ && !endless)) return;
+    noted_ = true;
+    const std::string why = unknown ? "not known"
+                                    : fmt::format("{:.2e}, below --target-error, but unstable: {}",
+                                                  progress.estimated_error, progress.unstable);
+    const std::string note = fmt::format(
+        "note: after {} the estimated error is {}; rendering goes on while that is so, or until {}{}\n",
+        counted(progress.passes, "pass", "passes"), why, endless ? "Ctrl-C, which writes the image" : "another limit",
+        unknown ? "" : "; --accept-unstable would have stopped here");
+    terminal_ && !quiet_ ? tell_in_place(note) : tell_text(note);
+}
+
 void ProgressDisplay::show(const RenderProgress& progress) {
+    note_unstable_target(progress);
     if (quiet_) return;
     const double share = share_done(progress);
     const double rate = progress.wall_s > 0.0 ? double(progress.samples) / progress.wall_s : 0.0;
-    const double left = share > 0.0 ? progress.wall_s * (1.0 - share) / share : 0.0;
-    const std::string line = fmt::format("{:3.0f} %  {} passes  {:.2f} Msamples/s  {} left  {}", share * 100.0,
-                                         progress.passes, rate * 1e-6, duration_text(left), error_text(progress)) +
-                             (progress.unstable.empty() ? "" : fmt::format("; unstable: {}", progress.unstable));
+    const std::string left =
+        share > 0.0 ? fmt::format("{} left  ", duration_text(progress.wall_s * (1.0 - share) / share)) : "";
+    const std::string line =
+        fmt::format("{:3.0f} %  {}  {:.2f} Msamples/s  {}{}", share * 100.0, counted(progress.passes, "pass", "passes"),
+                    rate * 1e-6, left, error_text(progress)) +
+        (progress.unstable.empty() ? "" : fmt::format("; unstable: {}", progress.unstable));
     if (terminal_) {
         constexpr int kWidth = 20;
         const int filled = static_cast<int>(std::lround(share * kWidth));

@@ -13,6 +13,7 @@
 #include "core/plugin.h"
 #include "core/scene/build.h"
 #include "core/statistics.h"
+#include "core/text.h"
 #include "core/watch.h"
 
 #include <fmt/format.h>
@@ -52,6 +53,25 @@ ErrorRate error_rate(const ChosenIntegrator& chosen) {
     return ErrorRate::of_photons(1.0);
 }
 
+// What ends the rendering: the command line's limits, or the scene's samples.
+BudgetLimits choose_limits(const RenderOptions& options, const ChosenIntegrator& chosen, const SceneSettings& settings,
+                           const std::string& unseen_error) {
+    if (options.replay) return {1, {}, {}};
+    BudgetLimits limits = options.limits;
+    if (chosen.integrator->fixes_eye_samples()) limits.passes = options.pass_limit();
+    if (limits.passes || limits.seconds) return limits;
+    if (!limits.target_error) {
+        limits.passes = uint64_t(settings.samples_per_pixel);
+    } else if (!unseen_error.empty() && !limits.accept_unstable) {
+        throw InputError(fmt::format(
+            "error: --target-error alone would never stop: with integrator \"{}\" the estimated error stays "
+            "unstable, because {}; give another limit, too (--passes or --time), or take the estimate as it "
+            "is (--accept-unstable)",
+            chosen.name, unseen_error));
+    }
+    return limits;
+}
+
 std::vector<std::string> choose_outputs(const RenderOptions& options, const SceneSettings& settings) {
     std::vector<std::string> outputs = options.outputs;
     if (outputs.empty() && !options.replay) {
@@ -63,15 +83,18 @@ std::vector<std::string> choose_outputs(const RenderOptions& options, const Scen
 }
 
 void print_summary(const RunRecord& run, const std::vector<std::string>& outputs) {
-    print("{}: {}, {} passes, {} ({} in all), {:.2f} Mrays/s on {}\n", run.scene, run.integrator, run.progress.passes,
-          duration_text(run.progress.wall_s), duration_text(run.total_s),
+    print("{}: {}, {}, {} ({} in all), {:.2f} Mrays/s on {}\n", run.scene, run.integrator,
+          counted(run.progress.passes, "pass", "passes"), duration_text(run.progress.wall_s),
+          duration_text(run.total_s),
           run.progress.wall_s > 0.0 ? double(run.film.rays) / run.progress.wall_s * 1e-6 : 0.0, run.backend);
     print("{}\n", ProgressDisplay::error_text(run.progress));
     if (!run.progress.unstable.empty())
         print("the error estimate is unstable, the true error may be much larger: {}\n", run.progress.unstable);
+    if (const std::string target = ProgressDisplay::target_text(run.progress); !target.empty()) print("{}\n", target);
     if (run.film.non_finite > 0)
         tell(
-            "warning: {} samples were not finite, or too large to be added to the others, and are left out; the first one is "
+            "warning: {} samples were not finite, or too large to be added to the others, and are left out; the first "
+            "one is "
             "sample {} of pixel ({}, {}): look at it with --replay {},{},{}\n",
             run.film.non_finite, run.film.first_non_finite[2], run.film.first_non_finite[0],
             run.film.first_non_finite[1], run.film.first_non_finite[0], run.film.first_non_finite[1],
@@ -145,21 +168,18 @@ int render(const RenderOptions& options) {
         reference = std::move(image.pixels);
     }
 
+    const uint32_t eye_samples = chosen.integrator->fixes_eye_samples() ? options.eye_samples.value_or(1) : 1;
+    const std::string unseen_error = chosen.integrator->unseen_error(eye_samples);
+    const BudgetLimits limits = choose_limits(options, chosen, built.settings, unseen_error);
     const CompileDisplay compile_display(options.quiet);
     const std::unique_ptr<Device> device = create_device(options.backend, options.device);
     const DeviceSceneHandle device_scene = device->upload(built.scene);
     Film film(*device, built.scene, crop);
-    BudgetLimits limits = options.limits;
-    const bool fixed_eye_samples = chosen.integrator->fixes_eye_samples();
-    if (fixed_eye_samples) limits.passes = options.pass_limit();
-    if (!limits.passes && !limits.seconds && !limits.target_error)
-        limits.passes = uint64_t(built.settings.samples_per_pixel);
-    if (options.replay) limits = {1, {}, {}};
     RenderSession session(*device, built.scene, device_scene, film, limits);
     session.photon_map = chosen.photon_map;
     session.error_rate = error_rate(chosen);
-    if (fixed_eye_samples) session.eye_samples = options.eye_samples.value_or(1);
-    session.unseen_error = chosen.integrator->unseen_error(session.eye_samples);
+    session.eye_samples = eye_samples;
+    session.unseen_error = unseen_error;
     session.seed = options.seed.value_or(built.settings.seed);
     session.sampler = built.settings.sampler == "independent" ? kernel::SAMPLER_INDEPENDENT : kernel::SAMPLER_SOBOL;
     if (options.replay) session.start_at(uint64_t((*options.replay)[2]));

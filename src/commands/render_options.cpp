@@ -104,6 +104,8 @@ void RenderOptions::finish() {
     if (texts.target_error) {
         if (!(*texts.target_error > 0.0)) throw InputError("error: --target-error must be above 0");
         limits.target_error = texts.target_error;
+    } else if (limits.accept_unstable) {
+        throw InputError("error: --accept-unstable says how --target-error stops, and there is none");
     }
     for (const std::string& setting : texts.settings) {
         const size_t dot = setting.find('.'), equals = setting.find('=');
@@ -154,8 +156,12 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
     command.add_option("--passes", o.texts.passes, "Stop after this many passes")->type_name("N");
     command.add_option("--time", o.texts.time, "Stop after this much rendering time: 30s, 5min, 2h")
         ->type_name("DURATION");
-    command.add_option("--target-error", o.texts.target_error, "Stop when the estimated relMSE is below this")
+    command
+        .add_option("--target-error", o.texts.target_error,
+                    "Stop when the estimated relMSE is below this and can be trusted")
         ->type_name("E");
+    command.add_flag("--accept-unstable", o.limits.accept_unstable,
+                     "Let --target-error stop at an estimate that cannot be trusted, too");
     command.add_option("--reference", o.reference, "Reference image: the statistics tell the error over time")
         ->type_name("REF.exr");
     command.add_option("--stats", o.statistics_file, "Write what it cost as JSON")->type_name("FILE.json");

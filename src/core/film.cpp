@@ -37,17 +37,6 @@ std::array<Estimate, 3> estimates(const kernel::FilmPixel& p) {
             estimate(double(p.sum.z) + double(p.low.z), p.squares.z, weight, n)};
 }
 
-// The share of a sum that the largest 0.1 % of its terms make; 0 where the sum is not known, or none.
-double share_of_largest(std::vector<float> terms) {
-    double sum = 0.0, largest = 0.0;
-    for (const float term : terms) sum += double(term);
-    if (!(sum > 0.0) || !std::isfinite(sum)) return 0.0;
-    const size_t count = (terms.size() + 999) / 1000;
-    std::nth_element(terms.begin(), terms.begin() + ptrdiff_t(count - 1), terms.end(), std::greater<>());
-    for (size_t i = 0; i < count; ++i) largest += double(terms[i]);
-    return largest / sum;
-}
-
 constexpr double kLargestFloat = std::numeric_limits<float>::max();
 
 // As a number of an image, which is finite: NaN, an error that is not known yet, is 0.
@@ -97,9 +86,6 @@ void Film::download() {
 FilmSummary Film::summary() const {
     FilmSummary result;
     result.min_samples = std::numeric_limits<uint32_t>::max();
-    double error = 0.0, bias_squared = 0.0;
-    uint64_t lit = 0, dark = 0;
-    std::vector<float> errors(pixels_.size());
     for (size_t i = 0; i < pixels_.size(); ++i) {
         const kernel::FilmPixel& p = pixels_[i];
         result.samples += p.counts.x;
@@ -110,37 +96,31 @@ FilmSummary Film::summary() const {
             result.first_non_finite = {uint32_t(window_.x + i % window_.z), uint32_t(window_.y + i / window_.z),
                                        p.counts.w};
         result.non_finite += p.counts.z;
-        const std::array<Estimate, 3> radiance = estimates(p);
-        double of_pixel = 0.0;
-        bool unknown = false;
-        for (const Estimate& e : radiance) {
-            of_pixel += e.variance / (e.mean * e.mean + 0.01);
-            unknown = unknown || e.variance > kLargestFloat;
-        }
-        error += of_pixel;
-        errors[i] = of_image(of_pixel);
-        const bool sees_surface = p.albedo.x > 0.0f || p.albedo.y > 0.0f || p.albedo.z > 0.0f;
-        const bool has_light = p.squares.x > 0.0f || p.squares.y > 0.0f || p.squares.z > 0.0f;
-        lit += sees_surface && has_light;
-        dark += sees_surface && !has_light;
-        if (!bias_buffer_) {
-            result.unknown_errors += unknown;
-            continue;
-        }
-        const std::array<Estimate, 3> bias = bias_estimates(i);
-        for (const Estimate& e : bias) unknown = unknown || !std::isfinite(e.mean) || e.variance > kLargestFloat;
-        result.unknown_errors += unknown;
-        // The square of a noisy estimate is too large by its variance; what is left may be negative here and there.
-        for (size_t c = 0; c < 3; ++c)
-            bias_squared +=
-                (bias[c].mean * bias[c].mean - bias[c].variance) / (radiance[c].mean * radiance[c].mean + 0.01);
     }
-    if (bias_squared > 0.0) error += bias_squared;
-    result.estimated_relmse =
-        result.unknown_errors > 0 ? std::numeric_limits<double>::quiet_NaN() : error / (3.0 * double(pixels_.size()));
-    result.health.min_samples = result.min_samples;
-    result.health.dark_share = lit + dark > 0 ? double(dark) / double(lit + dark) : 0.0;
-    result.health.largest_share = share_of_largest(std::move(errors));
+    const ErrorEstimate error = estimate_error(
+        window_.z, window_.w, [&](uint32_t x, uint32_t y) { return pixel_estimate(size_t(y) * window_.z + x); });
+    result.unknown_errors = error.unknown;
+    result.estimated_relmse = error.relmse;
+    result.health = {result.min_samples, error.largest_share, error.dark_share};
+    return result;
+}
+
+PixelEstimate Film::pixel_estimate(size_t i) const {
+    const kernel::FilmPixel& p = pixels_[i];
+    PixelEstimate result;
+    result.radiance = estimates(p);
+    result.sees_surface = p.albedo.x > 0.0f || p.albedo.y > 0.0f || p.albedo.z > 0.0f;
+    result.has_light = p.squares.x > 0.0f || p.squares.y > 0.0f || p.squares.z > 0.0f;
+    result.left_out = p.counts.x >= 2 && p.counts.x == p.counts.z;
+    for (const Estimate& e : result.radiance) {
+        result.left_out |= !std::isfinite(e.mean);
+        result.unknown |= e.variance > kLargestFloat;
+    }
+    if (!bias_buffer_ || result.left_out) return result;
+    const std::array<Estimate, 3> bias = bias_estimates(i);
+    for (const Estimate& e : bias) result.unknown |= !std::isfinite(e.mean) || e.variance > kLargestFloat;
+    // The square of a noisy estimate is too large by its variance; what is left may be negative here and there.
+    for (size_t c = 0; c < 3; ++c) result.bias_squared[c] = bias[c].mean * bias[c].mean - bias[c].variance;
     return result;
 }
 

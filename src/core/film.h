@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/device.h"
+#include "core/error_estimate.h"
 #include "core/forecast.h"
 #include "core/image/image.h"
 #include "core/kernel_types.h"
@@ -19,15 +20,11 @@ struct FilmSummary {
     uint64_t non_finite = 0;                     // samples left out: not finite, or beyond what the sums hold
     std::array<uint32_t, 3> first_non_finite{};  // x, y, pass; meaningful where non_finite > 0
     uint64_t unknown_errors = 0;                 // pixels whose variance or bias is beyond the range of a float
-    // Estimated relMSE: the mean over pixels and channels of (Var(mean) + bias^2) / (mean^2 + 0.01). Samples count as independent,
-    // which overstates the error of a stratified sampler. The bias is that of attach_bias, else 0. NaN below two samples a pixel,
-    // and with unknown_errors.
+    // Estimated relMSE: the mean over pixels and channels of (Var(mean) + bias^2) / (R^2 + 0.01), R guessed by core/error_estimate.h.
+    // Samples count as independent, which overstates the error of a stratified sampler. The bias is that of attach_bias, else 0.
+    // NaN below two samples a pixel, and with unknown_errors.
     double estimated_relmse = 0.0;
     EstimateHealth health;  // whether that can be trusted
-};
-
-struct ChannelEstimate {
-    double mean = 0.0, variance = 0.0;  // variance of the mean; NaN below two samples
 };
 
 class Film {
@@ -54,6 +51,7 @@ class Film {
 
  private:
     std::array<ChannelEstimate, 3> bias_estimates(size_t pixel) const;
+    PixelEstimate pixel_estimate(size_t pixel) const;
     glm::uvec4 window_;
     uint32_t full_width_, full_height_;
     BufferHandle buffer_;

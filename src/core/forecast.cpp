@@ -1,5 +1,7 @@
 #include "core/forecast.h"
 
+#include "core/text.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,7 +27,8 @@ constexpr double kWindow = 6.0;       // the passes from 1/6 of all on are fitte
 constexpr double kStep = 1.18920711;  // 2^(1/4): looks that are closer together tell nothing more
 constexpr size_t kFewestPoints = 3;
 constexpr uint64_t kFewestPasses = 8;
-constexpr uint32_t kFewSamples = 16;  // of a pixel: a variance that they tell is still too small where light is rare
+constexpr uint64_t kEarlyPasses =
+    16;  // up to there errors fall faster or slower than later: radii and variances settle
 
 // 95 % quantile of Student's t: Cornish and Fisher's expansion of it about the normal distribution's.
 double t_quantile(double freedom) {
@@ -125,7 +128,7 @@ ErrorForecast forecast_halving(std::span<const ErrorPoint> history, ErrorRate ra
     if (!(s > 0.0 && c > 0.0)) return result;  // it rises, or is nothing but noise
     // While the history that is fitted still has few samples, its estimates grow: the error falls faster than they do.
     const double d_fastest = (drop - std::sqrt(noise)) / kFastest;
-    const double d_low = points.back().passes < kFewSamples ? d_fastest : std::max(c / falls, d_fastest);
+    const double d_low = points.back().passes < kEarlyPasses ? d_fastest : std::max(c / falls, d_fastest);
     // The spread of the time of a pass is independent of the number of passes: their logarithms' spreads add as squares.
     const auto apart = [&](double from, double to) {
         const double passes_spread = std::log(std::expm1(to) / std::expm1(from));
@@ -141,9 +144,9 @@ ErrorForecast forecast_halving(std::span<const ErrorPoint> history, ErrorRate ra
 }
 
 std::string why_unstable(const EstimateHealth& health, std::span<const ErrorPoint> history, ErrorRate rate) {
-    constexpr double kDark = 0.02, kLargest = 0.2, kGrowth = 1.2;
-    if (health.min_samples < kFewSamples)
-        return fmt::format("only {} sample{} in a pixel", health.min_samples, health.min_samples == 1 ? "" : "s");
+    constexpr double kDark = 0.02, kLargest = 0.5, kGrowth = 1.5;
+    if (health.min_samples < kTrustedSamples)
+        return fmt::format("only {} in a pixel", counted(health.min_samples, "sample"));
     if (health.dark_share > kDark)
         return fmt::format("{:.0f} % of the surfaces in sight have no light yet", 100.0 * health.dark_share);
     if (health.largest_share > kLargest)

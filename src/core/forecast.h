@@ -34,11 +34,14 @@ struct ErrorForecast {
 // `history` by increasing passes, the last one now.
 ErrorForecast forecast_halving(std::span<const ErrorPoint> history, ErrorRate rate);
 
+// With fewer samples of a pixel no estimate is trusted.
+constexpr uint32_t kTrustedSamples = 8;
+
 // Of all pixels' estimates: what tells whether the sum can be trusted.
 struct EstimateHealth {
     uint32_t min_samples = 0;    // of a pixel
     double largest_share = 0.0;  // of the estimate, by the 0.1 % of the pixels where it is largest
-    double dark_share = 0.0;     // of the pixels that see a surface that is not black: those without any light so far
+    double dark_share = 0.0;     // of the pixels that see a surface that is not black: those without light in sight
 };
 
 // Why the estimate is unstable, in a few words; empty where nothing speaks against it. What no sample has met, nothing shows;

@@ -26,7 +26,8 @@ uint32_t RenderSession::next_passes() {
     if (interrupt_requested()) interrupted_ = true;
     if (interrupted_ || progress_.finished) return 0;
     uint64_t count = 1;
-    if (seconds_per_pass_ > 0.0) count = uint64_t(std::clamp(SampleSlices::kSliceSeconds / seconds_per_pass_, 1.0, 1048576.0));
+    if (seconds_per_pass_ > 0.0)
+        count = uint64_t(std::clamp(SampleSlices::kSliceSeconds / seconds_per_pass_, 1.0, 1048576.0));
     // Twice as many as before at most: the first slices are short, and tell how long a pass takes.
     count = std::min(count, std::max<uint64_t>(1, progress_.passes));
     if (limits_.seconds && seconds_per_pass_ > 0.0) {
@@ -64,12 +65,19 @@ void RenderSession::passes_finished(uint32_t count) {
     if (!unseen_error.empty()) progress_.unstable = unseen_error;
     progress_.rays = summary.rays;
     progress_.samples = summary.samples;
-    // A handful of samples cannot vouch for an error.
-    constexpr uint32_t kTrustedSamples = 8;
-    if (limits_.target_error && summary.min_samples >= kTrustedSamples &&
-        summary.estimated_relmse <= *limits_.target_error)
-        progress_.finished = true;
+    progress_.target = compare_with_target(summary);
+    if (progress_.target == TargetState::kReached) progress_.finished = true;
     if (on_progress) on_progress(progress_, film);
+}
+
+TargetState RenderSession::compare_with_target(const FilmSummary& summary) const {
+    if (!limits_.target_error) return TargetState::kNone;
+    // Not even who accepts an unstable estimate wants the first look's, which may be that of a black picture.
+    if (summary.min_samples < kTrustedSamples) return TargetState::kAbove;
+    if (std::isnan(summary.estimated_relmse)) return TargetState::kUnknown;
+    if (summary.estimated_relmse > *limits_.target_error) return TargetState::kAbove;
+    if (!progress_.unstable.empty() && !limits_.accept_unstable) return TargetState::kBelowButUnstable;
+    return TargetState::kReached;
 }
 
 }  // namespace lampyris

@@ -21,7 +21,10 @@ struct BudgetLimits {
     std::optional<uint64_t> passes;
     std::optional<double> seconds;
     std::optional<double> target_error;  // estimated relMSE
+    bool accept_unstable = false;        // an estimate that cannot be trusted reaches the target, too
 };
+
+enum class TargetState { kNone, kAbove, kUnknown, kBelowButUnstable, kReached };
 
 // The state of a rendering after some passes; what progress displays and statistics see.
 struct RenderProgress {
@@ -31,6 +34,7 @@ struct RenderProgress {
     ErrorForecast forecast{};      // what halving it takes
     std::string unstable;          // why the estimate cannot be trusted; empty where nothing speaks against it
     uint64_t rays = 0, samples = 0;
+    TargetState target = TargetState::kNone;  // where the estimate is, of BudgetLimits::target_error
     bool finished = false;
 };
 
@@ -85,6 +89,7 @@ class RenderSession {
 
  private:
     using Clock = std::chrono::steady_clock;
+    TargetState compare_with_target(const FilmSummary& summary) const;
     BudgetLimits limits_;
     RenderProgress progress_;
     std::vector<ErrorPoint> history_;  // what each look at the film saw

@@ -133,6 +133,10 @@ nlohmann::ordered_json statistics_json(const RunRecord& run, const Scene& scene)
         {"interrupted", run.interrupted},
     };
     add_forecast(result, run.progress.forecast, !run.progress.unstable.empty());
+    if (run.progress.target != TargetState::kNone)
+        result["target_reached"] = run.progress.target == TargetState::kReached;
+    else
+        result["target_reached"] = nullptr;
     if (run.film.non_finite > 0)
         result["first_non_finite"] = {{"x", run.film.first_non_finite[0]},
                                       {"y", run.film.first_non_finite[1]},

@@ -1,8 +1,12 @@
 """`lampyris render` says what the next halving of the error takes, and where the estimate cannot be trusted."""
 
 import re
+import signal
+import subprocess
 
-from support.render_program import run, stats_of
+import pytest
+
+from support.render_program import command, run, stats_of
 
 KEYS = ["halving_s", "halving_low_s", "halving_high_s", "estimate_unstable"]
 
@@ -60,3 +64,104 @@ def test_what_all_passes_share_is_told(program, source_dir, tmp_path):
     done = run(*base, "--integrator", "ppm:photonsperiteration=2000", "--spp", "16")
     assert done.returncode == 0, done.stderr
     assert "all passes share" not in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "looks"),
+    [
+        # Caustics of a smooth ball, which path tracing meets by chance: the means of fireflies in the denominators made
+        # the estimate 6 to 29 times too low.
+        ("reference/conductor-smooth", ["--integrator", "path"], 6),
+        ("reference/dielectric-smooth", ["--integrator", "path"], 6),
+        ("demo/scene", ["--crop", "40,160,168,256"], 5),
+        # Nothing hides here.
+        ("reference/diffuse", ["--integrator", "path"], 5),
+    ],
+)
+def test_the_estimate_is_the_error_against_the_reference(program, source_dir, tmp_path, name, options, looks):
+    # From 2 samples on the error is 0.5 to 1.2 times the estimate in these scenes, at one seed and another.
+    file, scene = tmp_path / "stats.json", source_dir / "scenes" / f"{name}.pbrt"
+    reference = scene.parent / "reference.exr" if name.startswith("demo") else scene.with_suffix(".exr")
+    base = [program, scene, "-o", tmp_path / "o.exr", "--reference", reference, "--stats", file, "--seed", "3"]
+    done = run(*base, "--spp", str(2 ** (looks - 1)), *options)
+    assert done.returncode == 0, done.stderr
+    points = [point for point in stats_of(file)["convergence"] if point["passes"] >= 2]
+    assert len(points) >= looks - 1
+    for point in points:
+        assert 1 / 3 < point["relmse"] / point["estimated_error"] < 2.5, point
+
+
+def test_an_unstable_estimate_reaches_no_target(program, source_dir, tmp_path):
+    # A point light behind glass: no path meets it, the picture is black, and the estimate is 0.
+    file, scene = tmp_path / "stats.json", source_dir / "scenes/reference/sds-point.pbrt"
+    base = [program, scene, "-o", tmp_path / "o.exr", "--resolution", "32x32", "--integrator", "path", "--stats", file]
+    done = run(*base, "--target-error", "0.06", "--spp", "64")
+    assert done.returncode == 0, done.stderr
+    stats = stats_of(file)
+    assert (stats["passes"], stats["target_reached"], stats["estimate_unstable"]) == (64, False, True)
+    assert "the target error was not reached: the estimate is below it, but unstable\n" in done.stdout
+    begins = r"^note: after 8 passes the estimated error is 0.00e\+00, below --target-error, but unstable: 100 % of "
+    notes = re.findall(begins + ".*$", done.stderr, re.MULTILINE)
+    assert len(notes) == 1
+    assert notes[0].endswith("or until another limit; --accept-unstable would have stopped here")
+    done = run(*base, "--target-error", "0.06", "--accept-unstable")
+    assert done.returncode == 0, done.stderr
+    stats = stats_of(file)
+    assert (stats["passes"], stats["target_reached"], stats["estimate_unstable"]) == (8, True, True)
+    assert "the target error was reached by an unstable estimate\n" in done.stdout
+
+
+def test_a_target_above_the_error_is_not_reached(program, scene, tmp_path):
+    file = tmp_path / "stats.json"
+    done = run(program, scene, "-o", tmp_path / "o.exr", "--target-error", "1e-9", "--spp", "16", "--stats", file)
+    assert stats_of(file)["target_reached"] is False
+    assert "the target error was not reached\n" in done.stdout
+    done = run(program, scene, "-o", tmp_path / "o.exr", "--target-error", "1", "--stats", file)
+    assert stats_of(file)["target_reached"] is True
+    assert "the target error was reached\n" in done.stdout
+    done = run(program, scene, "-o", tmp_path / "o.exr", "--spp", "4", "--stats", file)
+    assert stats_of(file)["target_reached"] is None
+    assert "target error" not in done.stdout
+
+
+def test_a_target_that_can_never_be_trusted_needs_another_limit(program, source_dir, tmp_path):
+    diffuse = source_dir / "scenes/reference/diffuse.pbrt"
+    base = [program, diffuse, "-o", tmp_path / "o.exr", "--resolution", "16x16", "--target-error", "10"]
+    for integrator in ["ppm:photonsperiteration=500", "photon_map:photons=500"]:
+        name = integrator.split(":")[0]
+        done = run(*base, "--integrator", integrator)
+        assert done.returncode == 1
+        assert f'--target-error alone would never stop: with integrator "{name}"' in done.stderr
+        assert "--accept-unstable" in done.stderr
+        done = run(*base, "--integrator", integrator, "--accept-unstable")
+        assert done.returncode == 0, done.stderr
+        assert "reached by an unstable estimate" in done.stdout
+        done = run(*base, "--integrator", integrator, "--passes", "12")
+        assert done.returncode == 0, done.stderr
+        assert "not reached: the estimate is below it, but unstable" in done.stdout
+    # Enough eye samples that what they share is small.
+    done = run(*base, "--integrator", "ppm:photonsperiteration=500", "--spp", "16")
+    assert done.returncode == 0, done.stderr
+    assert "the target error was reached\n" in done.stdout
+
+
+def test_endless_rendering_says_so_even_where_it_is_to_be_quiet(program, source_dir, tmp_path):
+    scene = source_dir / "scenes/reference/sds-point.pbrt"
+    base = [
+        "-o",
+        tmp_path / "o.exr",
+        "--resolution",
+        "16x16",
+        "--integrator",
+        "path",
+        "--target-error",
+        "0.1",
+        "--quiet",
+    ]
+    with subprocess.Popen(command(program, scene, *base), stderr=subprocess.PIPE, text=True) as process:
+        line = process.stderr.readline()
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=30)
+    assert line.startswith("note: after 8 passes the estimated error is 0.00e+00, below --target-error, but unstable")
+    assert "or until Ctrl-C, which writes the image" in line
+    assert process.returncode == 130
