@@ -5,7 +5,7 @@ from itertools import groupby
 from pathlib import Path
 
 import numpy as np
-from accuracy.measured import NEAR, Curve, all_curves, all_runs, parts_of, plan_of_curves, theory_of, who_columns
+from accuracy.measured import NEAR, Curve, all_curves, all_runs, parts_of, plan_of_curves, who_columns
 from accuracy.panels import panels
 from lab.figures import downloads, palette
 from lab.runs import Run
@@ -52,8 +52,8 @@ def _text(plan: Plan) -> list[str]:
         f"{FORMULA}, against rendering time without set-up. A line is the median of {plan['seeds']} seeds, its band "
         f"their quantiles {low:g} and {high:g}; each seed is interpolated between its own looks on logarithmic axes, "
         "never beyond them. The dashed line of the reference is its own error, where that is known: a curve that comes "
-        f"within {NEAR:g} times of it says more of the reference than of the method, and slopes leave such "
-        "looks out, and take its error off the others.",
+        f"within {NEAR:g} times of it says more of the reference than of the method: such points are excluded from "
+        "slopes; the reference's error is subtracted from the rest.",
         f"Slopes are fitted to each seed from 1/{plan['tail']:g} of its time on; the interval is Student's over seeds "
         f"({CONFIDENCE:.0%}). A level that a seed does not reach is later than its end, and never guessed.",
     ]
@@ -83,7 +83,7 @@ def _error_plot(plan: Plan, key: tuple, curves: list[Curve]) -> Plot | None:
     if drawn[0].floor:
         floor = drawn[0].floor
         series.append(Series("the reference's own error", "reference", [first, ends[1]], [floor, floor], style="dash"))
-    unbiased = [curve for curve in drawn if theory_of(curve.statistics[0]).unbiased]
+    unbiased = [curve for curve in drawn if curve.theory().unbiased]
     if unbiased:
         end, error = unbiased[0].grid[-1], unbiased[0].median[-1]
         start = max(unbiased[0].grid[0], end / plan["tail"])
@@ -139,7 +139,7 @@ def _slope_table(plan: Plan, curves: list[Curve]) -> Table:
     for curve in curves:
         row = _row(curve) | {"floor": curve.floor if curve.floor is not None else "not known", "note": _note(curve)}
         if curve.entries:
-            theory = theory_of(curve.statistics[0])
+            theory = curve.theory()
             told = f"{theory.low:.2f}" if theory.unbiased else f"{theory.low:.2f} to {theory.high:.2f}: {theory.why}"
             row |= {
                 "passes": int(np.median([one["passes"] for one in curve.statistics])),
@@ -220,9 +220,7 @@ def _row(curve: Curve) -> dict:
 def _unbiased_verdict(plan: Plan, curves: list[Curve]) -> Verdict:
     claim = "The relMSE of an unbiased estimator falls as 1/samples: slope -1."
     found = [
-        (curve, curve.slope(plan["tail"], "passes"))
-        for curve in curves
-        if curve.entries and theory_of(curve.statistics[0]).unbiased
+        (curve, curve.slope(plan["tail"], "passes")) for curve in curves if curve.entries and curve.theory().unbiased
     ]
     return _verdict(claim, [(curve, slope, slope.holds(-1.0)) for curve, slope in found if np.isfinite(slope.low)])
 
@@ -236,7 +234,7 @@ def _progressive_verdict(plan: Plan, curves: list[Curve]) -> Verdict:
     for curve in curves:
         if not curve.entries:
             continue
-        theory, slope = theory_of(curve.statistics[0]), curve.slope(plan["tail"], "passes")
+        theory, slope = curve.theory(), curve.slope(plan["tail"], "passes")
         if not theory.unbiased and theory.high < 0.0 and np.isfinite(slope.low):
             found.append((curve, slope, slope.meets(theory.low, theory.high)))
     return _verdict(claim, found)

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from lab.catalogue import EXPERIMENTS, Method, Scene, read_toml
+from lab.catalogue import EXPERIMENTS, NO_BIAS, STAYS, VANISHES, Method, Scene, read_toml
 from lab.images import ROOT, read_exr, reference_error
 from lab.runs import Run
 from lab.sections import Column
@@ -68,6 +68,7 @@ class Curve:
     statistics: list[dict]
     failed: list[str]
     floor: float | None  # the reference's own error
+    seed_numbers: list[int] = field(default_factory=list)  # of the runs that did not fail
 
     def times(self, seed: int) -> list[float]:
         """When a seed was looked at."""
@@ -128,6 +129,10 @@ class Curve:
     def halvings(self) -> list[Halving]:
         """What each halving of the median error took."""
         return halvings(self.grid, self.median) if len(self.grid) else []
+
+    def theory(self) -> "Theory":
+        """What is expected of its method."""
+        return theory_of(self.case.method, self.statistics[0])
 
     def settings(self) -> str:
         """One line for hover texts."""
@@ -199,6 +204,7 @@ def curve_of(plan: Plan, store: Store, case: Case, floors: dict[str, float | Non
             curve.made.append(record["key"])
             curve.entries.append(entries)
             curve.statistics.append(record["statistics"])
+            curve.seed_numbers.append(run.seed)
         else:
             curve.failed.append((record.get("failed") or "no image was finished in the time").splitlines()[-1])
     return curve
@@ -242,14 +248,15 @@ class Theory:
     unbiased: bool = False
 
 
-def theory_of(statistics: dict) -> Theory:
-    """What is expected of an integrator, from what it says of itself: whether it looks photons up, how radii shrink."""
-    parameters = statistics["integrator"]["parameters"]
-    if not statistics.get("photon_map"):
+def theory_of(method: Method, statistics: dict) -> Theory:
+    """What is expected of a method: what methods.toml says of its bias, and how fast radii shrink."""
+    if method.bias == NO_BIAS:
         return Theory(-1.0, -1.0, "samples are independent", True)
-    alpha = parameters.get("alpha")
+    if method.bias == STAYS:
+        return Theory(-1.0, 0.0, "what all passes share stays, with its noise and bias")
+    if method.bias != VANISHES:
+        return Theory(-1.0, 0.0, "methods.toml does not tell its bias")
+    alpha = statistics["integrator"]["parameters"].get("alpha")
     if alpha is None:
-        return Theory(-1.0, 0.0, "the map stays, with its noise and bias")
-    if statistics["integrator"]["name"] == "ppm":
-        return Theory(-1.0, 0.0, "hit points stay, with their noise")
+        return Theory(-1.0, 0.0, "its bias vanishes, nothing tells how fast")
     return Theory(-1.0, -(1.0 - alpha) / 2, f"eye paths -1, photons -{alpha:.3g}, bias of edges -{(1 - alpha) / 2:.3g}")

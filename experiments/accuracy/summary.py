@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from accuracy.measured import Curve, all_curves, all_runs, plan_of_curves
+from accuracy.paired import paired_table
 from accuracy.panels import panels
 from lab.figures import downloads
 from lab.runs import Run
@@ -54,7 +55,8 @@ def report(plan: Plan, store: Store, folder: Path) -> Section:
         "picture sizes; what no method reached in the time that it had is left open.",
     ]
     groups = [list(one) for _, one in groupby(sorted(curves, key=_place), key=_place)]
-    section.tables = [_table(groups, levels)]
+    section.answer = _answer(groups, levels)
+    section.tables = [_table(groups, levels), paired_table(groups)]
     section.plots = [plot for group in groups if (plot := _plot(group, levels))]
     panels(folder, "summary", section.plots, falling=True)
     _write_csv(folder / "summary.csv", groups, levels)
@@ -100,6 +102,27 @@ def _table(groups: list[list[Curve]], levels: list[float]) -> Table:
         "In brackets: the spread over seeds, or the time where a median is a bound. `< T`: below it at its first look."
     )
     return Table("summary", "Which method to pick", columns, rows, caption)
+
+
+def _answer(groups: list[list[Curve]], levels: list[float]) -> Table:
+    """The picks alone, a row for a scene."""
+    columns = [Column("scene", "scene"), Column("backend", "backend")]
+    columns += [Column(f"level_{i}", f"relMSE {level:g}") for i, level in enumerate(levels)]
+    rows = []
+    for group in groups:
+        case = group[0].case
+        row = {"scene": case.scene.title, "backend": case.backend, "runs": [key for one in group for key in one.keys]}
+        rows.append(row | {f"level_{i}": _short_pick(contenders(group, level)) for i, level in enumerate(levels)})
+    caption = "The first to come down to it, and in how many seconds; `=`: others that are as good, as seeds tell."
+    return Table("answer", "Which method for which scene and accuracy", columns, rows, caption)
+
+
+def _short_pick(ordered: list[Contender]) -> str:
+    if not ordered[0].reached:
+        longest = max(one.curve.case.time_s for one in ordered)
+        return f"none within {longest:g}\N{NO-BREAK SPACE}s"
+    names = " = ".join(one.name for one in [ordered[0], *ties(ordered)])
+    return f"{names}: {ordered[0].time.median.text()}\N{NO-BREAK SPACE}s"
 
 
 def _pick(ordered: list[Contender]) -> dict:

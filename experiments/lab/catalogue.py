@@ -7,6 +7,12 @@ from pathlib import Path
 from lab.runs import ROOT, Run
 
 EXPERIMENTS = ROOT / "experiments"
+# What becomes of a method's bias with time: there is none, it vanishes, it stays. The last: nobody has said.
+NO_BIAS, VANISHES, STAYS, NOT_SAID = BIASES = ("none", "vanishes", "stays", "")
+_KEYS = {
+    "integrators": ("use", "plugin", "label", "structures", "eye_samples", "bias"),
+    "structures": ("use", "plugin", "label", "kernels"),
+}
 
 
 class DeclarationError(Exception):
@@ -23,6 +29,7 @@ class Method:
     photon_map: str = ""
     plugins: tuple[str, ...] = ()
     eye_samples: int | None = None
+    bias: str = NOT_SAID  # one of BIASES
 
     def apply(self, run: Run, scene: "Scene") -> Run:
         """The run with this method."""
@@ -94,6 +101,7 @@ class Catalogue:
     def read(methods: Path, scenes: Path, full: bool) -> "Catalogue":
         """Read the two files; sizes of `full` scenes take the place of the small ones."""
         tables = read_toml(methods)
+        _check_methods(methods, tables)
         found = {}
         for name, table in read_toml(scenes).items():
             plain = {**table, **(table.get("full", {}) if full else {})}
@@ -133,7 +141,8 @@ class Catalogue:
             photon_map = of_map["use"]
             plugins += [of_map["plugin"]] if "plugin" in of_map else []
             label = f"{label}, {of_map.get('label', structure)}"
-        return Method(name, label, table["use"], photon_map, tuple(plugins), table.get("eye_samples"))
+        bias = table.get("bias", NOT_SAID)
+        return Method(name, label, table["use"], photon_map, tuple(plugins), table.get("eye_samples"), bias)
 
     def methods(self, names: list[str]) -> list[Method]:
         """Methods by their names; "*": every integrator, "NAME+*": every structure, "*+NAME": all that take one."""
@@ -152,6 +161,23 @@ class Catalogue:
         if name not in rows:
             raise DeclarationError(f"methods.toml has no {kind} '{name}'; there are: {', '.join(rows)}")
         return rows[name]
+
+
+def _check_methods(path: Path, tables: dict) -> None:
+    """Refuse what would be passed over in silence: an unknown table or key, a bias that is none of BIASES."""
+    for kind, rows in tables.items():
+        if kind not in _KEYS:
+            raise DeclarationError(f"{path}: there is no table [{kind}]; tables are: {', '.join(_KEYS)}")
+        for name, row in rows.items():
+            where = f"{path}: [{kind}] {name}"
+            if "use" not in row:
+                raise DeclarationError(f"{where} lacks 'use'")
+            for key in row:
+                if key not in _KEYS[kind]:
+                    raise DeclarationError(f"{where} has no key '{key}'; keys are: {', '.join(_KEYS[kind])}")
+            if "bias" in row and row["bias"] not in BIASES[:-1]:
+                said = ", ".join(f'"{one}"' for one in BIASES[:-1])
+                raise DeclarationError(f"{where}: bias is one of {said}, not {row['bias']!r}")
 
 
 def read_toml(path: Path) -> dict:

@@ -78,6 +78,7 @@ def build_page(folder: Path, sections: list[Path], machine: dict, output: Path |
     environment.globals["significant"] = significant
     html = environment.get_template("index.html.jinja").render(
         groups=_groups(read),
+        answers=[section for section in read if section.get("answer")],
         machine=machine,
         counts=Counter(verdict["holds"] for section in read for verdict in section["verdicts"]),
         holds=HOLDS,
@@ -128,13 +129,17 @@ def _read_section(path: Path, output: Path) -> dict:
     if section.get("schema") != SCHEMA:
         raise PageError(f"{path}: its schema is '{section.get('schema')}', not '{SCHEMA}'")
     section["anchor"] = _anchor(section["experiment"], section["name"])
-    for kind in ("plots", "viewers", "tables"):
+    for kind in ("plots", "viewers"):
         for one in section[kind]:
             one["key"] = _anchor(section["anchor"], one["id"])
     linked = itertools.groupby(section["viewers"], lambda viewer: viewer["link"] or viewer["key"])
     section["viewer_rows"] = [list(row) for _, row in linked]
     _arrange(section["plots"])
-    for table in section["tables"]:
+    answer = section.get("answer")
+    for table in [*section["tables"], *([answer] if answer else [])]:
+        table["key"] = _anchor(section["anchor"], table["id"])
+        latex = path.parent / f"{table['id']}.tex"
+        table["latex"] = quote(os.path.relpath(latex, output)) if latex.exists() else ""
         for column in table["columns"]:
             values = [row[column["key"]] for row in table["rows"] if row.get(column["key"]) is not None]
             column["numeric"] = bool(values) and all(_is_number(value) for value in values)
@@ -196,7 +201,7 @@ def _run_keys(sections: list[dict]) -> list[str]:
             keys.update((key, None) for series in plot["series"] for point in series["runs"] or [] for key in point)
         for viewer in section["viewers"]:
             keys.update((image["run"], None) for image in viewer["images"] if image["run"])
-        for table in section["tables"]:
+        for table in [*section["tables"], *([section["answer"]] if section.get("answer") else [])]:
             keys.update((key, None) for row in table["rows"] for key in row.get("runs") or [])
     return list(keys)
 

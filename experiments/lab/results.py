@@ -24,15 +24,16 @@ Each row of a table, and each verdict, names a group of runs in its last column:
 [results-runs.json.gz](results-runs.json.gz) lists the group's runs, and `runs` has each one's command, settings and
 statistics, as `run.json` of the reproduction has them.
 
-## The machine
-
 """
+_MACHINE = "## The machine\n\n"
 
 
 def write_results(folder: Path, sections: list[Path], machine: dict, titles: dict[str, str]) -> None:
     """Write results.md and the runs it rests on into `folder`. `titles`: of experiments, by their folders."""
     groups = _Groups()
-    text = _HEAD + "".join(f"- {name}: {value}\n" for name, value in machine.items())
+    answers = [answer for path in sections if (answer := json.loads(path.read_text()).get("answer"))]
+    text = _HEAD + "".join(_table(answer, groups) for answer in answers) + _MACHINE
+    text += "".join(f"- {name}: {value}\n" for name, value in machine.items())
     experiment = ""
     figures: dict[Path, str] = {}
     for path in sections:

@@ -11,6 +11,8 @@ import math
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
+from lab.latex import latex_table
+
 SCHEMA = "lampyris.section/1"
 HOLDS = ["yes", "partly", "no", "not tested"]
 
@@ -143,10 +145,13 @@ class Section:
     viewers: list[Viewer] = field(default_factory=list)
     tables: list[Table] = field(default_factory=list)
     downloads: list[Download] = field(default_factory=list)
+    answer: Table | None = None  # what the page begins with
 
     def write(self, folder: Path) -> None:
-        """Save section.json and verdict.json into `folder`."""
+        """Save section.json, verdict.json and the tables as LaTeX into `folder`."""
         folder.mkdir(parents=True, exist_ok=True)
+        for table in [*self.tables, *([self.answer] if self.answer else [])]:
+            (folder / f"{table.id}.tex").write_text(latex_table(table))
         plain = {"schema": SCHEMA, **_finite(asdict(self))}
         (folder / "verdict.json").write_text(json.dumps(plain["verdicts"], indent=1) + "\n")
         unfinished = folder / "section.json.unfinished"

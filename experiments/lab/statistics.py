@@ -64,6 +64,15 @@ def mean_interval(values: Sequence[float], confidence: float = CONFIDENCE) -> In
     return Interval(mean, mean - float(reach), mean + float(reach))
 
 
+def paired_log_difference(first: Sequence[float], second: Sequence[float], confidence: float = CONFIDENCE) -> Interval:
+    """The mean of log(first / second) over pairs, by Student's t: what both of a pair share, drops out."""
+    first, second = np.asarray(first, dtype=float), np.asarray(second, dtype=float)
+    if len(first) != len(second):
+        raise ValueError(f"{len(first)} and {len(second)} numbers are no pairs")
+    kept = (first > 0) & (second > 0)
+    return mean_interval(np.log(first[kept] / second[kept]), confidence)
+
+
 def jackknife(
     statistic: Callable[[np.ndarray], float], samples: np.ndarray, confidence: float = CONFIDENCE
 ) -> Interval:

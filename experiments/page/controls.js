@@ -99,9 +99,9 @@ function showControls(viewer) {
   });
   if (focused) viewer.tabs[a].focus({ preventScroll: true });
   const { tablist } = viewer;
-  const overhang = viewer.tabs[a].offsetLeft;
-  if (overhang < tablist.scrollLeft || overhang + viewer.tabs[a].offsetWidth > tablist.scrollLeft + tablist.clientWidth) {
-    tablist.scrollLeft = overhang - 24; // not scrollIntoView: the page must stay where it is
+  const { offsetTop, offsetHeight } = viewer.tabs[a];
+  if (offsetTop < tablist.scrollTop || offsetTop + offsetHeight > tablist.scrollTop + tablist.clientHeight) {
+    tablist.scrollTop = offsetTop - 24; // not scrollIntoView: the page must stay where it is
   }
 
   for (const made of viewer.modes) {

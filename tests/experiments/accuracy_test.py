@@ -15,8 +15,8 @@ from lab.target import Target
 
 METHODS = """
 [integrators]
-path = {{ use = "path", label = "path tracing" }}
-sppm = {{ use = "sppm:photonsperiteration={{photons}}", structures = true, label = "SPPM" }}
+path = {{ use = "path", bias = "none", label = "path tracing" }}
+sppm = {{ use = "sppm:photonsperiteration={{photons}}", bias = "vanishes", structures = true, label = "SPPM" }}
 {more}
 [structures]
 kd_tree = {{ use = "kd_tree" }}
@@ -367,3 +367,65 @@ def test_the_best_value_of_a_knob_is_told_beyond_the_spread(planned, monkeypatch
     assert told["default"] == pytest.approx(2 / 3)
     assert (told["best"], told["told"]) == (0.8, "better by a factor of 2")
     assert [point for point in section.plots[0].series[0].x] == pytest.approx([0.5, 2 / 3, 0.8])
+
+
+@pytest.mark.parametrize(
+    ("bias", "holds"),
+    [
+        ('bias = "stays", ', ["yes", "yes"]),
+        ('bias = "vanishes", ', ["yes", "partly"]),  # its alpha says that it shall be faster
+        ("", ["yes", "yes"]),
+        ('bias = "none", ', ["partly", "yes"]),  # a claim that is checked
+    ],
+)
+def test_a_biased_method_spoils_no_verdict(planned, no_images, tmp_path, bias, holds):
+    laws = {"path": power(1.0, -1.0), "mine": power(0.3, -0.05)}
+
+    def error_of(run):
+        law = laws.get(run.integrator, power(0.05, -0.6))
+        return lambda n: law(n) * (1 + 0.02 * run.seed)
+
+    plan = planned("curves", f'mine = {{ use = "mine", {bias}label = "mine" }}', **SMALL)
+    section = curves.report(plan, Records(error_of), tmp_path)
+    assert [verdict.holds for verdict in section.verdicts] == holds
+    told = {row["method"]: row["theory"] for row in section.tables[0].rows}
+    assert told["path tracing"] == "-1.00"
+    assert bias or "methods.toml does not tell its bias" in told["mine"]
+
+
+def test_pairs_see_what_spreads_hide(same_curves, tmp_path):
+    """Errors differ by 1.2 from seed to seed, and methods by 1.05 with each seed: only pairs tell them apart."""
+    plan = same_curves("summary", **SMALL | {"seeds": 6})
+    scale = {1: 0.7, 2: 1.0, 3: 1.3, 4: 0.8, 5: 1.2, 6: 1.1}
+
+    def error_of(run):
+        own = (1.0 if run.integrator == "path" else 1.05) * scale[run.seed] * (1 + 0.001 * run.seed)
+        return lambda n: own / n
+
+    section = summary.report(plan, Records(error_of), tmp_path)
+    (row,) = next(table for table in section.tables if table.id == "paired").rows
+    assert (row["method"], row["best"], row["seeds"]) == ("SPPM", "path tracing", 6)
+    assert row["difference"] == "0.05 [0.05, 0.05]"  # ln 1.05
+    assert row["factor"] == "1.05 [1.05, 1.05]"
+    assert row["told"] == "worse"
+    noisy = {("path", 1): 1.1, ("path", 4): 0.9, ("path", 5): 1.2, ("path", 6): 0.8}
+    section = summary.report(
+        plan,
+        Records(lambda run: lambda n: noisy.get((run.integrator.split(":")[0], run.seed), 1.0) / n),
+        tmp_path,
+    )
+    (row,) = next(table for table in section.tables if table.id == "paired").rows
+    assert row["told"] == "no difference shown"
+
+
+def test_the_answer_names_the_pick_of_each_level(same_curves, tmp_path):
+    plan = same_curves("summary", **SMALL | {"levels": [1e-1, 1e-2, 2e-3, 1e-4], "time_s": 20})
+    store = Records(by_integrator(power(1.0, -1.0), power(0.08, -0.6)))
+    answer = summary.report(plan, store, tmp_path).answer
+    assert [column.title for column in answer.columns][2:] == [
+        f"relMSE {level}" for level in ("0.1", "0.01", "0.002", "0.0001")
+    ]
+    (row,) = answer.rows
+    assert row["level_0"] == "SPPM: < 0.01\N{NO-BREAK SPACE}s"
+    assert row["level_2"].startswith("SPPM = path tracing: ")
+    assert row["level_3"] == "none within 20\N{NO-BREAK SPACE}s"

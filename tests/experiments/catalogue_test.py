@@ -72,3 +72,27 @@ def test_every_target_plans_its_runs(catalogue):
         for full in (False, True):
             runs = target.module().runs(target.plan(catalogue, ["cpu", "vulkan"], "", full, {}))
             assert runs, target.id
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (
+            '[integrators]\nmine = { use = "mine", bias = "some" }',
+            'bias is one of "none", "vanishes", "stays", not \'some\'',
+        ),
+        ('[integrators]\nmine = { use = "mine", biased = true }', "mine has no key 'biased'; keys are: use, plugin"),
+        ('[integrators]\nmine = { label = "mine" }', "mine lacks 'use'"),
+        ('[structures]\nmine = { use = "mine", bias = "none" }', "has no key 'bias'"),
+        ('[integrator]\nmine = { use = "mine" }', r"no table \[integrator\]"),
+    ],
+)
+def test_what_methods_toml_does_not_know_is_refused(tmp_path, text, said):
+    path = tmp_path / "methods.toml"
+    path.write_text(text + "\n")
+    with pytest.raises(DeclarationError, match=said):
+        Catalogue.read(path, EXPERIMENTS / "scenes.toml", full=False)
+
+
+def test_every_method_tells_its_bias(catalogue):
+    assert all(table.get("bias") for table in catalogue.integrators.values())

@@ -395,3 +395,34 @@ def test_phone(open_page, images, tmp_path):
         page.locator(f"#{anchor}").scroll_into_view_if_needed()
         assert no_overflow(page), anchor
     page.screenshot(path=tmp_path / "phone-end.png")
+
+
+@pytest.mark.parametrize("screen", [{}, PHONE], ids=["laptop", "phone"])
+def test_the_page_begins_with_its_answer_and_tabs_end_within_their_box(open_page, tmp_path, screen):
+    page = open_page(**screen)
+    answer = page.locator("#accuracy-convergence-answer")
+    expect(answer).to_be_in_viewport()
+    assert answer.bounding_box()["y"] < page.locator(".glance").bounding_box()["y"]
+    expect(answer.locator("td").nth(1)).to_have_text("SPPM = path tracing: 0.21\N{NO-BREAK SPACE}s")
+    page.get_by_role("link", name="LaTeX").first.wait_for()
+    assert page.locator("a.latex").first.get_attribute("href") == "accuracy/convergence/answer.tex"
+    if not screen:
+        assert answer.locator(".table-scroll").evaluate("box => box.scrollWidth <= box.clientWidth")
+    tabs = page.locator("#effects-images-many .tabs")
+    tabs.scroll_into_view_if_needed()
+    edges = (
+        "list => [...list.children].map(tab => tab.getBoundingClientRect().right - list.getBoundingClientRect().right)"
+    )
+    assert max(tabs.evaluate(edges)) <= 0
+    assert tabs.evaluate("list => list.scrollWidth <= list.clientWidth")
+    assert tabs.bounding_box()["height"] <= 0.31 * page.viewport_size["height"]
+    # One that is chosen by a key comes into sight.
+    page.locator("#effects-images-many .stage").focus()
+    for _ in range(13):
+        page.keyboard.press("ArrowRight")
+    last = tabs.get_by_role("tab").last
+    expect(last).to_have_attribute("aria-selected", "true")
+    expect(last).to_be_in_viewport()
+    page.screenshot(path=tmp_path / "many.png")
+    assert no_overflow(page)
+    page.context.close()

@@ -1,6 +1,7 @@
 """A small reproduction of experiments, made up: its images, its sections, and the page made from them."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -46,7 +47,7 @@ def figures_section(runs: list[str]) -> Section:
     path.hover = [f"seed=7, passes={int(x)}, backend=cpu, a <tag> & b" for x in steps]
     path.runs = [[key] for key in runs]
     other = Series("PPM", "ppm", steps, [0.05, 0.02, 0.01, 0.006], hover=[f"photons={int(x)}" for x in steps])
-    slope = Series("slope −1", "reference", steps, [0.1 / x for x in steps], style="dash")
+    slope = Series("slope −1", "reference", steps, [0.13 / x for x in steps], style="dash")
     bars = [
         Series("build", "build", ["cpu", "vulkan"], [3.0, 1.5]),
         Series("query", "query", ["cpu", "vulkan"], [5.0, 2.5]),
@@ -85,6 +86,17 @@ def figures_section(runs: list[str]) -> Section:
             )
         ],
         downloads=[Download("data.csv", "Data (CSV)")],
+        answer=Table(
+            "answer",
+            "Which method for which scene",
+            [Column("scene", "scene"), *(Column(f"level_{i}", f"relMSE 1e-{i}") for i in range(1, 5))],
+            [
+                {
+                    "scene": "the box",
+                    **{f"level_{i}": "SPPM = path tracing: 0.21\N{NO-BREAK SPACE}s" for i in range(1, 5)},
+                }
+            ],
+        ),
     )
 
 
@@ -111,6 +123,7 @@ def images_section() -> Section:
                 caption="Look at the ring.",
             ),
             Viewer("again", "The same, linked", [reference, path], "reference", link="box"),
+            Viewer("many", "Many", [replace(path, name=f"SPPM, structure number {i}") for i in range(14)]),
             Viewer("crop", "A crop with a map", [image("crop", error_map="maps/error.exr"), reference], "reference"),
         ],
     )
