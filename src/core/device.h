@@ -63,8 +63,8 @@ class UnfinishedError : public MachineError {
 // What not every device can do.
 enum class DeviceFeature {
     kInt64Atomics,
-    kRayQuery,  // rays of a scene are traced by hardware, or by what the driver has in its place
-    kBoxes,     // build_boxes
+    kRayQuery,   // rays of a scene are traced by hardware, or by what the driver has in its place
+    kBoxes,      // build_boxes
     kLongLoops,  // loops of any length in a kernel; elsewhere the driver ends them, and run throws UnfinishedError
 };
 

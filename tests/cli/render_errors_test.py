@@ -84,7 +84,7 @@ def test_what_pbrt_has_and_lampyris_has_not_can_be_skipped(program, scene, tmp_p
         .replace('Film "rgb"', 'Film "spectral" "integer nbuckets" 16')
         .replace('Camera "perspective"', 'Camera "spherical" "string mapping" "equalarea"')
     )
-    parts = ['path regularization is not supported', 'film "spectral" is', 'camera "spherical" is']
+    parts = ["path regularization is not supported", 'film "spectral" is', 'camera "spherical" is']
     assert_refused(run(program, scene, "-o", tmp_path / "o.exr"), 1, *parts)
     stats = tmp_path / "stats.json"
     done = run(program, scene, "-o", tmp_path / "o.exr", "--skip-unsupported", "--stats", stats)

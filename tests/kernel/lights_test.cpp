@@ -224,7 +224,8 @@ TEST(Lights, InfiniteLightsAreSampledWithTheirDensity) {
                 light.data = {kernel::LIGHT_INFINITE_IMAGE, 0, scene.add_image(picture, 8, 8, kernel::WRAP_OCTAHEDRAL),
                               uint32_t(scene.scene.transforms.size())};
                 scene.scene.transforms.push_back(transform_of(glm::rotate(dmat4(1.0), 0.5, dvec3(1, 0, 0))));
-                light.ids = {append_image_distribution(picture, 8, 8, kEvenLightShare, scene.scene.distributions), 8, 8, 0};
+                light.ids = {append_image_distribution(picture, 8, 8, kEvenLightShare, scene.scene.distributions), 8, 8,
+                             0};
                 scene.add_light(light, vec3(0.5f), 2.0f);
             }
             scene.scene.record.lights.y = uint32_t(scene.scene.lights.size());

@@ -157,7 +157,8 @@ TEST(LargeBuffersOfDevices, ReachTheLastWord) {
     if (device->description().find("llvmpipe") == std::string::npos) GTEST_SKIP() << "binds gigabytes";
     constexpr uint32_t kWords = 40'000'000;  // 160 MB, above 134
     const auto in = device->create_buffer(size_t(kWords) * 4, "inputs"),
-               out = device->create_buffer(size_t(kWords) * 4, "results"), counter = device->create_buffer(4, "counter");
+               out = device->create_buffer(size_t(kWords) * 4, "results"),
+               counter = device->create_buffer(4, "counter");
     const float values[] = {3.0f, 5.0f};
     in->upload(values, 8, size_t(kWords - 2) * 4);
     const auto kernel = device->compile("kernel/device_square.kernel.h", 0);

@@ -112,7 +112,7 @@ class CpuDevice final : public Device {
     std::string backend() const override { return tracer_ == CpuTracerKind::embree ? "cpu" : "cpu-bvh2"; }
     std::string description() const override { return processor_name(); }
     unsigned threads() const override { return threads_; }
-    bool offers(DeviceFeature feature) const override { 
+    bool offers(DeviceFeature feature) const override {
         return feature == DeviceFeature::kInt64Atomics || feature == DeviceFeature::kLongLoops;
     }
 

@@ -155,9 +155,8 @@ class Rewriting {
             const auto interface = std::find_if(kept.begin() + 2, kept.end(), [](uint32_t word) {
                 return word >> 24 == 0;  // a zero in the last byte ends the name
             });
-            kept.erase(
-                std::remove_if(interface + 1, kept.end(), [&](uint32_t id) { return replaced_.count(id) != 0; }),
-                kept.end());
+            kept.erase(std::remove_if(interface + 1, kept.end(), [&](uint32_t id) { return replaced_.count(id) != 0; }),
+                       kept.end());
             return emit(out, op, kept);
         }
         if (op == spv::OpTypeStruct && words[1] == range_struct_) {

@@ -30,8 +30,8 @@ class VulkanDevice final : public Device {
           account_(std::make_shared<MemoryAccount>()),
           cache_(cache_folder(options)) {
         check_settings("vulkan", options,
-                       {"cache", "exact", "max_binding", "optimize", "precise", "ray_query", "specialise", "staging", "validation",
-                        "wide_reads", "workgroup"});
+                       {"cache", "exact", "max_binding", "optimize", "precise", "ray_query", "specialise", "staging",
+                        "validation", "wide_reads", "workgroup"});
         account_->limit = options.max_memory;
         context_->can.max_storage_range = std::min(context_->can.max_storage_range, largest_binding(options));
         shader_options_.precise = read_switch(options, "precise", Switch::on) != Switch::off;

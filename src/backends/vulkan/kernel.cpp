@@ -59,8 +59,8 @@ KernelPipeline& VulkanKernel::pipeline(const SceneBindings& scene, std::span<con
     return *kept;
 }
 
-VulkanKernel::Spent VulkanKernel::run(const SceneBindings& scene, std::span<const KernelBinding> buffers, uint32_t begin,
-                         uint32_t count, const std::function<bool()>& stop) const {
+VulkanKernel::Spent VulkanKernel::run(const SceneBindings& scene, std::span<const KernelBinding> buffers,
+                                      uint32_t begin, uint32_t count, const std::function<bool()>& stop) const {
     Spent spent;
     const auto start = std::chrono::steady_clock::now();
     const size_t pipelines = pipelines_.size();

@@ -44,7 +44,8 @@ class VulkanBuffer final : public Buffer {
     void fill_zero() override;
 
     vk::Buffer handle() const { return *buffer_; }
-    vk::DeviceAddress address() const;  // of buffers made for it (eShaderDeviceAddress), and of those that are too large to bind
+    vk::DeviceAddress address()
+        const;  // of buffers made for it (eShaderDeviceAddress), and of those that are too large to bind
     KernelBinding binding() const;
     void* mapped() const { return mapped_; }
     void check_range(size_t bytes, size_t offset) const;  // throws std::logic_error

@@ -52,8 +52,7 @@ KernelPipeline::KernelPipeline(std::shared_ptr<Context> context, const std::stri
             by_address.size(), double(context_->can.max_storage_range) / 1e6, context_->name,
             (context_->can.max_push_constants - sizeof(KernelRange)) / sizeof(vk::DeviceAddress)));
     }
-    for (const auto& of_set : entries)
-        set_layouts_.emplace_back(device, vk::DescriptorSetLayoutCreateInfo({}, of_set));
+    for (const auto& of_set : entries) set_layouts_.emplace_back(device, vk::DescriptorSetLayoutCreateInfo({}, of_set));
     std::vector<vk::DescriptorSetLayout> layouts;
     for (const auto& layout : set_layouts_) layouts.push_back(*layout);
     const vk::PushConstantRange range(vk::ShaderStageFlagBits::eCompute, 0, constant_bytes);

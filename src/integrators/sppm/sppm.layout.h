@@ -17,7 +17,7 @@ struct SppmPass {
     // Paths emitted in the pass, sampler kind, hit points a pixel, paths in a build of the map (keys). Where there is one eye sample a
     // pixel, FilmWindow counts passes; where there are more, these.
     uvec4 counts;
-    vec4 low;       // photons are kept within this box
+    vec4 low;  // photons are kept within this box
     vec4 high;
     vec4 scale;  // x: squared radius over that of the first pass, where passes have the same one (memoryless)
     uvec4 keep;  // x: which photons are kept: SPPM_KEEP_*; y: branches, hit points of one eye path
