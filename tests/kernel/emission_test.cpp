@@ -60,8 +60,9 @@ std::vector<LightCase> cases() {
          "\"float conedeltaangle\" 20\n" +
              matte + far_shape},
         {"projection",
-         "Translate 0 0 2\nRotate 180 1 0 0\nLightSource \"projection\" \"float fov\" 70 \"string filename\" \"" +
-             picture + "\"\n" + matte + far_shape},
+         "AttributeBegin\nTranslate 0 0 2\nRotate 180 1 0 0\nLightSource \"projection\" \"float fov\" 70 \"string "
+         "filename\" \"" +
+             picture + "\"\nAttributeEnd\n" + matte + far_shape},
         {"distant",
          "LightSource \"distant\" \"point3 from\" [ 1 0.5 3 ] \"point3 to\" [ 0 0 0 ] \"rgb L\" [ 1 2 3 ]\n" + matte +
              "Shape \"sphere\" \"float radius\" 2\n"},
