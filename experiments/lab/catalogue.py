@@ -136,7 +136,7 @@ class Catalogue:
         label, photon_map = table.get("label", integrator), ""
         if structure:
             if not table.get("structures"):
-                raise DeclarationError(f"'{name}': {integrator} looks no photons up")
+                raise DeclarationError(f"'{name}': {integrator} does not use a photon map")
             of_map = self._row(self.structures, structure, "structure")
             photon_map = of_map["use"]
             plugins += [of_map["plugin"]] if "plugin" in of_map else []

@@ -159,10 +159,11 @@ int bench(const BenchOptions& options) {
 }
 
 void add_bench(CLI::App& parent, std::function<int()>& run) {
-    CLI::App* command = parent.add_subcommand("bench", "Measures parts of Lampyris on this machine");
+    CLI::App* command = parent.add_subcommand("bench", "Measure parts of Lampyris on this machine");
     command->require_subcommand(1);
     auto options = std::make_shared<BenchOptions>();
-    CLI::App* maps = command->add_subcommand("photon-maps", "Photon-query structures: time and memory per photon");
+    CLI::App* maps =
+        command->add_subcommand("photon-maps", "Measure photon-query structures: time and memory per photon");
     maps->add_option("--structures", options->structures, "NAME[:key=value,...],... (default: all)")->delimiter(',');
     maps->add_option("--backend", options->backends, "cpu, cpu-bvh2, vulkan; several joined by commas")
         ->delimiter(',')
@@ -173,10 +174,8 @@ void add_bench(CLI::App& parent, std::function<int()>& run) {
         ->check(CLI::IsMember(photon_distributions()))
         ->capture_default_str();
     maps->add_option("--queries", options->settings.queries, "queries of a measurement")->capture_default_str();
-    maps->add_option("--found", options->settings.found, "photons that a query shall find, on average")
-        ->capture_default_str();
-    maps->add_option("--seconds", options->settings.seconds, "that a measurement lasts, at least")
-        ->capture_default_str();
+    maps->add_option("--found", options->settings.found, "average photons per query")->capture_default_str();
+    maps->add_option("--seconds", options->settings.seconds, "shortest time of a measurement")->capture_default_str();
     maps->add_option("--device", options->device.device, "number, or part of the name");
     maps->add_option("--threads", options->device.threads, "of the CPU backends (0: all)");
     maps->add_option("--plugin", options->plugins, "load a plugin first")->type_name("FILE.so");

@@ -2,7 +2,7 @@
 //
 //     void add_hello(CLI::App& parent, std::function<int()>& run) {
 //         auto name = std::make_shared<std::string>();
-//         CLI::App* command = parent.add_subcommand("hello", "Greets");
+//         CLI::App* command = parent.add_subcommand("hello", "Greet");
 //         command->add_option("NAME", *name, "whom")->required();
 //         command->callback([&run, name] { run = [name] { fmt::print("hello, {}\n", *name); return 0; }; });
 //     }

@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "core/pbrt_integrators.h"
 #include "core/scene/load.h"
+#include "core/text.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -72,16 +73,19 @@ void print_table(const LoadedScene& loaded) {
     fmt::print("picture      {}x{}", scene.width(), scene.height());
     if (crop != std::array<int, 4>{0, 0, int(scene.width()), int(scene.height())})
         fmt::print(", of which {},{} to {},{}", crop[0], crop[1], crop[2], crop[3]);
-    fmt::print(", {} samples a pixel ({})\n", loaded.settings.samples_per_pixel, loaded.settings.sampler);
+    fmt::print(", {} a pixel ({})\n", counted(uint64_t(loaded.settings.samples_per_pixel), "sample"),
+               loaded.settings.sampler);
     const std::string& asked = loaded.settings.integrator.type;
     const std::string renders = rendering_integrator(asked);
     fmt::print("integrator   {}{}\n", asked, renders == asked ? "" : fmt::format(" (rendered by {})", renders));
-    fmt::print("shapes       {} triangles, {} patches, {} quadrics in {} geometries; {} instances", counts.triangles,
-               counts.patches, counts.quadrics, scene.geometries.size(), scene.instances.size() - 1);
-    if (scene.instances.size() > 1) fmt::print(" ({} triangles in all)", counts.triangles_with_instances);
+    fmt::print("shapes       {}, {}, {} in {}; {}", counted(counts.triangles, "triangle"),
+               counted(counts.patches, "patch", "patches"), counted(counts.quadrics, "quadric"),
+               counted(scene.geometries.size(), "geometry", "geometries"),
+               counted(scene.instances.size() - 1, "instance"));
+    if (scene.instances.size() > 1) fmt::print(" ({} in all)", counted(counts.triangles_with_instances, "triangle"));
     fmt::print("\nlights       {}, of which {} infinite\n", scene.lights.size(), scene.record.lights.y);
-    fmt::print("materials    {}; {} texture operations, {} images\n", scene.materials.size(), scene.texture_ops.size(),
-               scene.images.size());
+    fmt::print("materials    {}; {}, {}\n", scene.materials.size(),
+               counted(scene.texture_ops.size(), "texture operation"), counted(scene.images.size(), "image"));
     fmt::print("memory       {:.1f} MB before acceleration structures\n\n", double(counts.memory) * 1e-6);
 
     size_t name_width = 6, asked_width = 8;
@@ -99,7 +103,7 @@ void print_table(const LoadedScene& loaded) {
     std::string rest;
     for (const EffectInfo& info : known_effects())
         if (!request_of(scene.effects, info.effect)) rest += fmt::format("{}{}", rest.empty() ? "" : ", ", info.name);
-    if (!rest.empty()) fmt::print("\nnot called for, and left out: {}\n", rest);
+    if (!rest.empty()) fmt::print("\nnot needed by this scene: {}\n", rest);
     for (const std::string& note : scene.notes) fmt::print("note: {}\n", note);
 }
 

@@ -37,8 +37,8 @@ std::string to_text(const std::vector<DeviceInfo>& devices) {
 void add_devices(CLI::App& parent, std::function<int()>& run) {
     auto json = std::make_shared<bool>(false);
     CLI::App* command =
-        parent.add_subcommand("devices", "Lists what each backend can run on (--backend NAME --device NUMBER)");
-    command->add_flag("--json", *json, "machine-readable, schema lampyris.devices/1 (docs/backends.md)");
+        parent.add_subcommand("devices", "List what each backend can run on (--backend NAME --device NUMBER)");
+    command->add_flag("--json", *json, "print JSON, schema lampyris.devices/1 (docs/backends.md)");
     command->callback([&run, json] {
         run = [json] {
             const auto devices = list_devices();

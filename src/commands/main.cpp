@@ -1,6 +1,7 @@
 // The lampyris program: finds the subcommand, and turns what it throws into a message and an exit code.
 #include "commands/command.h"
 #include "commands/console.h"
+#include "commands/foreign_words.h"
 #include "core/error.h"
 #include "core/version.h"
 
@@ -12,6 +13,7 @@
 #include <cstring>
 #include <new>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -35,9 +37,10 @@ void check_command_name(const CLI::App& app, int argc, char** argv) {
                                  did_you_mean(argv[1], names), list_of(names)));
 }
 
-// What an option that nobody knows was meant to be, if there is one and it is near.
+// What an option that nobody knows was meant to be: another renderer's word, or one that is near.
 std::string near_option(const CLI::App& app) {
     for (const std::string& text : app.remaining(true)) {
+        if (const std::string advice = advice_on_option(text.substr(0, text.find('='))); !advice.empty()) return advice;
         if (!text.starts_with("--")) continue;
         std::vector<std::string> names;
         const CLI::App* command = &app;
@@ -49,12 +52,25 @@ std::string near_option(const CLI::App& app) {
     return {};
 }
 
+// "help COMMAND" is "COMMAND --help".
+std::vector<char*> without_help(int argc, char** argv) {
+    static char option[] = "--help";
+    std::vector<char*> words(argv, argv + argc);
+    if (argc < 2 || std::string_view(argv[1]) != "help") return words;
+    words.erase(words.begin() + 1);
+    words.push_back(option);
+    return words;
+}
+
 int run_command_line(int argc, char** argv) {
+    std::vector<char*> words = without_help(argc, argv);
+    argc = int(words.size());
+    argv = words.data();
     CLI::App app("Lampyris, a laboratory for light transport.", "lampyris");
     app.set_version_flag("--version", fmt::format("lampyris {}", version()));
     app.require_subcommand(1);
     app.get_formatter()->column_width(36);
-    app.footer("'lampyris COMMAND --help' tells a command's options.");
+    app.footer("'lampyris help COMMAND' lists a command's options.");
     std::function<int()> run;
     for (const Command& command : commands()) command.add(app, run);
     check_command_name(app, argc, argv);

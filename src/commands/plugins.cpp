@@ -1,5 +1,6 @@
 // lampyris plugins [KIND [NAME]]: what is registered, and the parameters that it takes.
 #include "commands/command.h"
+#include "commands/foreign_words.h"
 #include "core/error.h"
 #include "core/pbrt_integrators.h"
 #include "core/plugin.h"
@@ -132,6 +133,16 @@ void print_pbrt_integrators() {
     }
 }
 
+// What another renderer calls so, or the kinds that do have the name.
+std::string advice(const PluginsOptions& options) {
+    if (const std::string foreign = advice_on_plugin(options.kind, options.name); !foreign.empty()) return foreign;
+    const std::string& name = options.name.empty() ? options.kind : options.name;
+    std::string kinds;
+    for (const RegistryBase* registry : registries())
+        if (registry->find_info(name)) kinds += fmt::format("{}{}", kinds.empty() ? "" : ", ", registry->kind());
+    return kinds.empty() ? "" : fmt::format("; \"{}\" is a plugin of: {}", name, kinds);
+}
+
 std::vector<const RegistryBase*> wanted_kinds(const PluginsOptions& options) {
     std::vector<const RegistryBase*> all = registries();
     if (options.kind.empty()) return all;
@@ -140,15 +151,15 @@ std::vector<const RegistryBase*> wanted_kinds(const PluginsOptions& options) {
         if (registry->kind() == options.kind) {
             if (!options.name.empty() && !registry->find_info(options.name)) {
                 const auto [message, hint] = registry->unknown(options.name);
-                throw InputError(
-                    fmt::format("lampyris: error: {}{}{}", message, hint.starts_with(' ') ? "" : "; ", hint));
+                throw InputError(fmt::format("lampyris: error: {}{}{}{}", message, hint.starts_with(' ') ? "" : "; ",
+                                             hint, advice(options)));
             }
             return {registry};
         }
         names.push_back(registry->kind());
     }
-    throw InputError(fmt::format("lampyris: error: there is no kind of plugin \"{}\"{}; the kinds are {}", options.kind,
-                                 did_you_mean(options.kind, names), list_of(names)));
+    throw InputError(fmt::format("lampyris: error: there is no kind of plugin \"{}\"{}; the kinds are {}{}",
+                                 options.kind, did_you_mean(options.kind, names), list_of(names), advice(options)));
 }
 
 int plugins(const PluginsOptions& options) {

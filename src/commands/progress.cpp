@@ -31,11 +31,11 @@ std::string ProgressDisplay::error_text(const RenderProgress& progress) {
     // An end as far away as that tells no more than that there may be none.
     constexpr double kFar = 100.0;  // times what was spent so far
     if (forecast.high_s < kFar * progress.wall_s)
-        return error + fmt::format("halving it takes {} to {} more ({:.0f} %)", duration_text(forecast.low_s),
+        return error + fmt::format("halving takes {} to {} more ({:.0f} %)", duration_text(forecast.low_s),
                                    duration_text(forecast.high_s), percent);
     if (std::isfinite(forecast.low_s))
-        return error + fmt::format("halving it takes {} more at least", duration_text(forecast.low_s));
-    return error + "no telling yet what halving it takes";
+        return error + fmt::format("halving takes at least {} more", duration_text(forecast.low_s));
+    return error + "too early to predict its halving";
 }
 
 double ProgressDisplay::share_done(const RenderProgress& progress) const {

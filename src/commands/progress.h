@@ -11,7 +11,7 @@ class ProgressDisplay {
  public:
     ProgressDisplay(bool quiet, BudgetLimits limits);
     void show(const RenderProgress& progress);
-    // "estimated relMSE 1.2e-03, halving it takes 12.1 s to 18.0 s more (90 %)"
+    // "estimated relMSE 1.2e-03, halving takes 12.1 s to 18.0 s more (90 %)"
     static std::string error_text(const RenderProgress& progress);
     // Whether --target-error was reached, in a line; empty without it.
     static std::string target_text(const RenderProgress& progress);

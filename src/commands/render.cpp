@@ -37,7 +37,8 @@ ChosenIntegrator choose_integrator(const RenderOptions& options, BuiltScene& bui
     if (!chosen.integrator) return chosen;
     if (!options.photon_map.empty()) {
         if (!chosen.integrator->uses_photon_map())
-            throw InputError(fmt::format("error: --photon-map: integrator \"{}\" looks no photons up", chosen.name));
+            throw InputError(
+                fmt::format("error: --photon-map: integrator \"{}\" does not use a photon map", chosen.name));
         chosen.photon_map = options.photon_map;
     }
     if (chosen.integrator->uses_photon_map())
@@ -93,17 +94,17 @@ void print_summary(const RunRecord& run, const std::vector<std::string>& outputs
     if (const std::string target = ProgressDisplay::target_text(run.progress); !target.empty()) print("{}\n", target);
     if (run.film.non_finite > 0)
         tell(
-            "warning: {} samples were not finite, or too large to be added to the others, and are left out; the first "
-            "one is "
-            "sample {} of pixel ({}, {}): look at it with --replay {},{},{}\n",
-            run.film.non_finite, run.film.first_non_finite[2], run.film.first_non_finite[0],
-            run.film.first_non_finite[1], run.film.first_non_finite[0], run.film.first_non_finite[1],
-            run.film.first_non_finite[2]);
+            "warning: left out {} that {} not finite, or too large to be added to the others; the first one is sample "
+            "{} of "
+            "pixel ({}, {}): look at it with --replay {},{},{}\n",
+            counted(run.film.non_finite, "sample"), run.film.non_finite == 1 ? "was" : "were",
+            run.film.first_non_finite[2], run.film.first_non_finite[0], run.film.first_non_finite[1],
+            run.film.first_non_finite[0], run.film.first_non_finite[1], run.film.first_non_finite[2]);
     if (run.film.unknown_errors > 0)
         tell(
-            "warning: the error of {} pixels is not known, since squares of their radiance are beyond the range of a "
+            "warning: the error of {} is not known, since squares of radiance there are beyond the range of a "
             "float: scale the lights down, and the exposure up\n",
-            run.film.unknown_errors);
+            counted(run.film.unknown_errors, "pixel"));
     for (const std::string& output : outputs) print("wrote {}\n", output);
 }
 

@@ -2,12 +2,14 @@
 
 #include "core/error.h"
 #include "core/plugin.h"
+#include "core/scene/limits.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
+#include <utility>
 
 namespace lampyris {
 namespace {
@@ -79,8 +81,9 @@ void RenderOptions::finish() {
     if (!texts.resolution.empty()) {
         const std::vector<int> size =
             parse_integers(texts.resolution, 'x', 2, "--resolution", "WIDTHxHEIGHT, for example 640x480");
-        if (size[0] < 1 || size[1] < 1)
-            throw InputError(fmt::format("error: --resolution {}: both sides must be at least 1", texts.resolution));
+        if (std::min(size[0], size[1]) < 1 || std::max(size[0], size[1]) > kLargestSide)
+            throw InputError(
+                fmt::format("error: --resolution {}: sides are 1 to {} pixels", texts.resolution, kLargestSide));
         build.resolution = {size[0], size[1]};
     }
     if (!texts.crop.empty()) {
@@ -94,12 +97,13 @@ void RenderOptions::finish() {
     }
     if (!texts.time.empty()) limits.seconds = parse_duration(texts.time);
     if (!texts.max_memory.empty()) device.max_memory = parse_size(texts.max_memory);
-    for (const std::optional<int64_t>& count : {texts.spp, texts.passes}) {
+    for (const auto& [option, count] : {std::pair{"--spp", texts.spp}, std::pair{"--passes", texts.passes}}) {
         if (!count) continue;
-        if (*count < 1) throw InputError("error: --spp and --passes must be at least 1");
+        if (*count < 1 || *count > kMostSamples)
+            throw InputError(fmt::format("error: {} {}: expected 1 to {}", option, *count, kMostSamples));
         limits.passes = limits.passes ? std::min(*limits.passes, uint64_t(*count)) : uint64_t(*count);
     }
-    if (texts.spp) eye_samples = uint32_t(std::min<int64_t>(*texts.spp, std::numeric_limits<uint32_t>::max()));
+    if (texts.spp) eye_samples = uint32_t(*texts.spp);
     if (!std::isfinite(write.exposure)) throw InputError("error: --exposure must be a number of stops");
     if (texts.target_error) {
         if (!(*texts.target_error > 0.0)) throw InputError("error: --target-error must be above 0");
@@ -177,7 +181,7 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
         ->type_name("X,Y,PASS");
     command.add_option("--set", o.texts.settings, "Any parameter: integrator.maxdepth=12, backend.ray_query=on")
         ->type_name("SECTION.KEY=VALUE");
-    command.add_flag("-q,--quiet", o.quiet, "Only errors are told");
+    command.add_flag("-q,--quiet", o.quiet, "Print errors only");
 }
 
 }  // namespace lampyris

@@ -99,11 +99,17 @@ std::string ParameterSpec::type_text() const {
     return result;
 }
 
+std::string ParameterSpec::number_text(double value) const {
+    const bool whole = type == ParameterType::kInteger && std::isfinite(value);
+    return whole ? fmt::format("{:.0f}", value) : fmt::format("{:g}", value);
+}
+
 std::string ParameterSpec::range_text() const {
     const bool low = std::isfinite(minimum), high = std::isfinite(maximum);
-    if (low && high) return fmt::format("{}{:g} to {:g}", above_minimum ? "above " : "", minimum, maximum);
-    if (low) return fmt::format("{} {:g}", above_minimum ? "above" : "at least", minimum);
-    if (high) return fmt::format("at most {:g}", maximum);
+    if (low && high)
+        return fmt::format("{}{} to {}", above_minimum ? "above " : "", number_text(minimum), number_text(maximum));
+    if (low) return fmt::format("{} {}", above_minimum ? "above" : "at least", number_text(minimum));
+    if (high) return fmt::format("at most {}", number_text(maximum));
     return {};
 }
 
@@ -111,8 +117,7 @@ std::string ParameterSpec::default_text() const {
     if (required) return "(required)";
     const bool scalar = !array && text.empty();
     if (scalar && type == ParameterType::kBool) return number != 0.0 ? "true" : "false";
-    if (scalar && (type == ParameterType::kFloat || type == ParameterType::kInteger))
-        return fmt::format("{:g}", number);
+    if (scalar && (type == ParameterType::kFloat || type == ParameterType::kInteger)) return number_text(number);
     return text;
 }
 
@@ -147,7 +152,7 @@ const ParameterSpec& ParameterReader::spec(std::string_view name) const {
 
 bool ParameterReader::check(const ParameterSpec& spec, double value) {
     if (spec.contains(value)) return true;
-    error(spec.name, fmt::format("\"{}\" is {:g}", spec.name, value), expected(spec));
+    error(spec.name, fmt::format("\"{}\" is {}", spec.name, spec.number_text(value)), expected(spec));
     return false;
 }
 
@@ -248,8 +253,8 @@ void read_parameters(void* target, const ParameterFields& fields, const Paramete
         if (spec.contains(value)) {
             store(target, field, value);
         } else {
-            diagnostics.error(list.find(spec.name)->value_location, fmt::format("\"{}\" is {:g}", spec.name, value),
-                              expected(spec));
+            diagnostics.error(list.find(spec.name)->value_location,
+                              fmt::format("\"{}\" is {}", spec.name, spec.number_text(value)), expected(spec));
         }
     }
 }

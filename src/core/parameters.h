@@ -67,9 +67,10 @@ struct ParameterSpec {
         return std::move(*this);
     }
 
-    bool contains(double value) const;  // in range; NaN is not
-    std::string type_text() const;      // "float or texture", "string, one of a, b"
-    std::string range_text() const;     // "above 0", "1 to 1024", empty where there is none
+    bool contains(double value) const;            // in range; NaN is not
+    std::string type_text() const;                // "float or texture", "string, one of a, b"
+    std::string number_text(double value) const;  // of an integer all digits
+    std::string range_text() const;               // "above 0", "1 to 1024", empty where there is none
     std::string default_text() const;
 };
 using ParameterSpecs = std::vector<ParameterSpec>;

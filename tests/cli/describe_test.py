@@ -66,7 +66,7 @@ def test_describe_prints_a_table(program, scene):
     row = next(line for line in done.stdout.splitlines() if line.startswith("dielectric"))
     assert "yes" in row
     assert "scene.pbrt:6:1" in row
-    assert "not called for, and left out: smooth-normals" in done.stdout
+    assert "not needed by this scene: smooth-normals" in done.stdout
 
 
 def test_describe_reports_all_errors_with_their_places(program, scene):

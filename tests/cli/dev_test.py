@@ -1,5 +1,6 @@
 """./dev itself: what it says, what it refuses, and that a second run has nothing to set up."""
 
+import re
 import subprocess
 import sys
 import time
@@ -133,3 +134,18 @@ def test_the_python_files_pass_ruff(source_dir, arguments):
     ruff = [sys.executable, "-m", "ruff", *arguments, "--no-cache", "--quiet", "."]
     done = subprocess.run(ruff, cwd=source_dir, capture_output=True, text=True, timeout=60, check=False)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "listed"),
+    [
+        (["reproduce", "--list"], "random_points"),
+        (["reproduce", "--list", "--full"], "curves"),
+        (["bench", "--list"], "rays"),
+    ],
+)
+def test_lists_need_no_build(source_dir, arguments, listed):
+    done = dev(source_dir, *arguments)
+    assert done.returncode == 0, done.stderr
+    assert re.search(rf"^{listed} +\S", done.stdout, re.MULTILINE)
+    assert done.stderr == ""  # what sets up or builds says so there

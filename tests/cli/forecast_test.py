@@ -24,7 +24,7 @@ def test_statistics_and_last_lines_have_the_forecast(program, scene, tmp_path):
     assert last["halving_low_s"] < 3 * stats["wall_s"]
     assert last["halving_high_s"] > stats["wall_s"] / 3
     assert last["estimate_unstable"] is False
-    said = r"estimated relMSE \d\.\d\de-\d\d, halving it takes \S+ m?s to \S+ m?s more \(90 %\)"
+    said = r"estimated relMSE \d\.\d\de-\d\d, halving takes \S+ m?s to \S+ m?s more \(90 %\)"
     assert re.search(f"^{said}$", done.stdout, re.MULTILINE)
     assert re.search(said, done.stderr)  # the progress line
     assert "unstable" not in done.stdout

@@ -131,7 +131,7 @@ def test_too_little_memory_is_the_machines_fault(program, scene, tmp_path):
 def test_a_device_that_does_not_exist_is_told(program, scene, tmp_path):
     for backend in ["vulkan", "cpu"]:
         done = run(program, scene, "-o", tmp_path / "o.exr", "--backend", backend, "--device", "99")
-        assert_refused(done, 2, "99", "CPU" if backend == "cpu" else "Vulkan")
+        assert_refused(done, 2, "99", "the backend cpu has" if backend == "cpu" else "Vulkan has")
 
 
 def test_scenes_that_cannot_be_read(program, tmp_path):

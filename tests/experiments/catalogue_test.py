@@ -30,7 +30,7 @@ def test_wildcards_name_what_is_declared(catalogue):
     [
         ("frobnicate", "no integrator 'frobnicate'; there are: path"),
         ("sppm+frobnicate", "no structure 'frobnicate'; there are: stochastic_hash"),
-        ("path+kd_tree", "looks no photons up"),
+        ("path+kd_tree", "does not use a photon map"),
     ],
 )
 def test_a_wrong_method_is_told(catalogue, name, said):

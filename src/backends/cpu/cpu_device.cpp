@@ -1,6 +1,7 @@
 // The CPU backend: kernels as C++, oneTBB over indices, Embree (or the shaders' BVH2, built as C++) for rays.
 #include "backends/cpu/cpu_scene.h"
 #include "core/device.h"
+#include "core/device_choice.h"
 #include "core/error.h"
 #include "core/kernel_registry.h"
 #include "core/watch.h"
@@ -20,6 +21,7 @@
 #include <fstream>
 #include <new>
 #include <optional>
+#include <span>
 #include <thread>
 
 namespace lampyris {
@@ -100,9 +102,8 @@ class CpuDevice final : public Device {
         : tracer_(tracer), meter_(std::make_shared<MemoryMeter>()) {
         check_settings(backend(), options, {});
         meter_->limit = options.max_memory;
-        if (!options.device.empty() && options.device != "0" && description().find(options.device) == std::string::npos)
-            throw MachineError(fmt::format("error: --device {}: the CPU backends have one device: 0, {}",
-                                           options.device, description()));
+        const std::string name = description();
+        choose_device(std::span(&name, 1), options.device, std::string("the backend ") + backend());
         threads_ = options.threads ? options.threads : std::max(1u, std::thread::hardware_concurrency());
         // TBB starts as many threads as the machine has, whatever an arena asks for, unless it is told.
         if (threads_ > std::thread::hardware_concurrency())

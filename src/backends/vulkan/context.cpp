@@ -1,5 +1,6 @@
 #include "backends/vulkan/context.h"
 
+#include "core/device_choice.h"
 #include "core/error.h"
 
 #include <fmt/format.h>
@@ -184,16 +185,10 @@ Capabilities capabilities_of(const vk::raii::PhysicalDevice& device, uint32_t qu
     return can;
 }
 
-// By number, or by part of the name; without a wish the first.
 size_t choose(const std::vector<vk::raii::PhysicalDevice>& devices, const std::string& wish) {
-    if (wish.empty()) return 0;
-    std::string list;
-    for (size_t i = 0; i < devices.size(); ++i) {
-        const std::string name = devices[i].getProperties().deviceName.data();
-        if (wish == std::to_string(i) || name.find(wish) != std::string::npos) return i;
-        list += fmt::format("{}{} {}", i ? ", " : "", i, name);
-    }
-    throw MachineError(fmt::format("error: there is no Vulkan device \"{}\"; there are: {}", wish, list));
+    std::vector<std::string> names;
+    for (const vk::raii::PhysicalDevice& device : devices) names.emplace_back(device.getProperties().deviceName.data());
+    return choose_device(names, wish, "Vulkan");
 }
 
 }  // namespace

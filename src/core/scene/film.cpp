@@ -1,6 +1,8 @@
 // Film "rgb" and "gbuffer": resolution, crop, exposure.
 #include "core/scene/film.h"
 
+#include "core/scene/limits.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,8 +16,6 @@ namespace lampyris {
 namespace {
 
 using Rectangle = std::array<int, 4>;  // x0 y0 x1 y1, half-open
-
-constexpr int kLargestSide = 1 << 15;
 
 // The four numbers x0 x1 y0 y1 of a parameter, each pair in order; nothing, and an error or a warning, where they are none.
 // pbrt-v4 goes on where their number is wrong, with what holds without them.

@@ -1,5 +1,6 @@
 // pbrt-v4's samplers, mapped to the two that Lampyris has: independent random numbers, and Owen-scrambled Sobol points.
 #include "core/scene/film.h"
+#include "core/scene/limits.h"
 
 #include <fmt/format.h>
 
@@ -31,12 +32,13 @@ void build_sobol(SamplerContext& context) {
 void build_stratified(SamplerContext& context) {
     context.reader.get_bool("jitter");
     const int64_t samples = int64_t(context.reader.get_int("xsamples")) * context.reader.get_int("ysamples");
-    if (samples > (1 << 30))
-        context.reader.error("xsamples", fmt::format("{} samples a pixel", samples), "at most 2^30");
-    set_sampler(context, "sobol", samples > (1 << 30) ? 1 : int(samples));
+    if (samples > kMostSamples)
+        context.reader.error("xsamples", fmt::format("{} samples a pixel", samples),
+                             fmt::format("at most {}", kMostSamples));
+    set_sampler(context, "sobol", samples > kMostSamples ? 1 : int(samples));
 }
 
-ParameterSpec samples_spec() { return integer("pixelsamples", 16, "samples for each pixel").between(1, 1 << 30); }
+ParameterSpec samples_spec() { return integer("pixelsamples", 16, "samples for each pixel").between(1, kMostSamples); }
 ParameterSpec seed_spec() { return integer("seed", 0, "another seed gives other random numbers"); }
 ParameterSpecs plain_specs() { return {samples_spec(), seed_spec()}; }
 ParameterSpecs random_specs() {

@@ -1,0 +1,14 @@
+// Which of a backend's devices `--device` means.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+namespace lampyris {
+
+// A number is a number; anything else is part of a name, in upper or lower case. Nothing: the first one. Throws MachineError, which
+// lists the devices.
+size_t choose_device(std::span<const std::string> names, const std::string& wish, const std::string& backend);
+
+}  // namespace lampyris
