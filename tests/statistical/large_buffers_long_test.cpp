@@ -1,5 +1,5 @@
 // large_buffers_test at the sizes that people ask for: films, scenes and photons beyond the largest binding of lavapipe (134 MB), against
-// the CPU. Up to 6 GB of memory.
+// the CPU. Up to 3 GB of memory, five to fifteen minutes.
 #include "support/agreement.h"
 
 #include <fmt/format.h>
