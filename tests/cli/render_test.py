@@ -51,7 +51,7 @@ def test_light_beyond_a_float_is_warned_of(program, tmp_path):
     limits = ["--passes", "16", "--target-error", "1"]
     done = run(program, scene, "-o", pfm, "--stats", stats_file, *limits)
     assert done.returncode == 0, done.stderr
-    assert "warning: 208 samples were not finite, or too large to be added to the others" in done.stderr
+    assert "warning: left out 208 samples that were not finite, or too large to be added to the others" in done.stderr
     assert "warning: the error of 16 pixels is not known" in done.stderr
     stats = json.loads(stats_file.read_text())
     assert stats["non_finite_samples"] == 16 * 13  # the fourth sample of each pixel, and those after it

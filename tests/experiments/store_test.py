@@ -137,7 +137,7 @@ def test_a_wrong_run_says_what_the_program_said(machine, tmp_path):
 
 def test_what_the_machine_cannot_do_is_a_result(machine, tmp_path):
     store = Store(tmp_path, machine)
-    run = a_run(resolution="100000x100000")
+    run = a_run(resolution="32768x32768")
     record = store.make(run)
     assert "needs" in record["failed"]
     assert "memory" in record["failed"]
