@@ -8,7 +8,7 @@ from pathlib import Path
 from support.programs import SCENES, Work, arguments_of, build, render, run, write
 
 GOAL = 0.01  # more instructions than a build that never heard of the other effects
-# Each calls for other effects; effects_path.kernel.h has a build for exactly what each calls for.
+# Each calls for other effects; effects_path.radiance.h has a build for exactly what each calls for.
 CPU_SCENES = ["diffuse", "dielectric-smooth", "textures", "coated-diffuse", "infinite-image"]
 
 

@@ -1,5 +1,5 @@
 // Runs `path` once over a small film on one thread, with the build that the program picks for the scene (registered), or with
-// one that knows the scene's effects only (exact; see effects_path.kernel.h). bench/effects.py counts instructions in both.
+// one that knows the scene's effects only (exact; see effects_path.radiance.h). bench/effects.py counts instructions in both.
 //
 //     effects_bench SCENE WIDTHxHEIGHT SAMPLES registered|exact     prints JSON
 #include "backends/cpu/cpu_scene.h"
@@ -38,7 +38,7 @@ int run(const std::string& file, int width, int height, uint32_t samples, bool e
     PathParams params;
     const IntegratorFactory& factory = integrators().require("path");
     set_defaults(&params, factory.fields);
-    const char* kernel_file = exact ? "effects_path.kernel.h" : "integrators/path/path.kernel.h";
+    const char* kernel_file = exact ? "effects_path.radiance.h" : "integrators/path/path.radiance.h";
     const CpuKernelFunction kernel = find_cpu_kernel(kernel_file, CpuTracerKind::embree, scene.effects.mask());
 
     const uint32_t pixels = uint32_t(width) * uint32_t(height);

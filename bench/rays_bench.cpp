@@ -106,7 +106,7 @@ int run(const std::string& file, int width, int height, uint32_t samples, int th
     set_defaults(&params, factory.fields);
     read_parameters(&params, factory.fields, built.settings.integrator.parameters, diagnostics);
     const CpuKernelFunction kernel =
-        find_cpu_kernel("integrators/path/path.kernel.h", CpuTracerKind::embree, scene.effects.mask());
+        find_cpu_kernel("integrators/path/path.radiance.h", CpuTracerKind::embree, scene.effects.mask());
 
     const uint32_t pixels = uint32_t(width) * uint32_t(height);
     std::vector<kernel::FilmPixel> film(pixels);

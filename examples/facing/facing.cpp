@@ -7,7 +7,7 @@ class Facing : public lampyris::Integrator {
  public:
     FacingParams params;
     void render(lampyris::RenderSession& session) override {
-        render_samples(session, "facing/facing.kernel.h", &params, sizeof(params));
+        render_samples(session, "facing/facing.radiance.h", &params, sizeof(params));
     }
 };
 

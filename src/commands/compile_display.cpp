@@ -13,10 +13,11 @@ namespace {
 using std::chrono::seconds;
 constexpr seconds kUnmentioned{2}, kInPlaceInterval{1}, kLogInterval{10};
 
-// "path" of integrators/path/path.kernel.h, "sppm+kd_tree" of a consumer and a structure.
+// "path" of integrators/path/path.radiance.h, "sppm+kd_tree" of a consumer and a structure.
 std::string short_name(std::string_view kernel) {
     std::string name;
     for (std::string_view part : kernel_parts(kernel)) {
+        if (part == kPixelLoop) continue;
         part.remove_prefix(part.rfind('/') + 1);  // from 0 where there is none
         name += name.empty() ? "" : "+";
         name += part.substr(0, part.find('.'));

@@ -82,7 +82,7 @@ class Device {
     // Builds acceleration structures and uploads the scene. The scene must outlive the result.
     virtual DeviceSceneHandle upload(const Scene& scene) = 0;
 
-    // `file` is the kernel's path below its source root ("integrators/path/path.kernel.h"), or several joined by '+', which
+    // `file` is the kernel's path below its source root ("integrators/path/path.radiance.h"), or several joined by '+', which
     // make one kernel in that order ("accel/common/collect.consumer.h+accel/linked_list/linked_list.gather.h"); code for effects
     // outside `effects` may be left out. `trace` says whether the kernel traces rays or reads the scene (needs a DeviceScene to run).
     virtual KernelHandle compile(std::string_view file, uint32_t effects) = 0;

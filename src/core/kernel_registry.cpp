@@ -52,6 +52,7 @@ std::vector<std::string_view> kernel_parts(std::string_view file) {
     for (size_t plus; (plus = file.find('+')) != std::string_view::npos; file.remove_prefix(plus + 1))
         parts.push_back(file.substr(0, plus));
     parts.push_back(file);
+    if (file.ends_with(".radiance.h")) parts.push_back(kPixelLoop);
     return parts;
 }
 

@@ -47,8 +47,10 @@ struct KernelText {
 const std::string_view* find_kernel_text(std::string_view file);
 std::vector<std::string> kernel_text_files();
 
-// The files of a kernel that is made of several: "a+b" is a, then b.
+// The files of a kernel that is made of several: "a+b" is a, then b. A radiance function, "NAME.radiance.h", is completed by the
+// loop over pixels.
 std::vector<std::string_view> kernel_parts(std::string_view file);
+inline constexpr std::string_view kPixelLoop = "core/kernel/pixel_loop.h";
 
 // The C++ build with the fewest effects that has all of `effects`. Throws std::logic_error for an unknown kernel,
 // InputError for a pair of files of two plugins, which no build has put together.

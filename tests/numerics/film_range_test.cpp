@@ -77,5 +77,20 @@ TEST_P(FilmRange, PhotonsThatOverflowAreCounted) {
     EXPECT_NEAR(image.value(0, 0, 0) / 1e37f, 1.0f, 1e-6f);
 }
 
+// The sensor and its clamp hold for every integrator: a sky seen from an open floor is 1 without them.
+TEST_P(FilmRange, EveryIntegratorGoesThroughTheSensor) {
+    for (const auto& [film, expected] :
+         {std::pair{"\"float maxcomponentvalue\" .25", .25f}, std::pair{"\"float iso\" 50", .5f}}) {
+        SCOPED_TRACE(film);
+        const std::string text = std::string("Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4 ") +
+                                 film +
+                                 "\nLookAt 0 0 1  0 .1 0  0 0 1\nCamera \"perspective\"\nWorldBegin\n"
+                                 "LightSource \"infinite\"\nShape \"disk\" \"float radius\" 100\n";
+        const Rendered image = render_text(text, settings_of(GetParam(), "ao:rays=1", 1, 0));
+        for (int y = 0; y < 4; ++y)
+            for (int x = 0; x < 4; ++x) EXPECT_NEAR(image.value(x, y, 0), expected, 1e-6f) << x << ", " << y;
+    }
+}
+
 }  // namespace
 }  // namespace lampyris::test

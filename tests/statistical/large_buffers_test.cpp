@@ -122,7 +122,7 @@ TEST(LargeBuffersCode, IsValid) {
         said += std::string(message) + "\n";
     });
     for (const bool optimize : {false, true}) {
-        for (const char* file : {"integrators/path/path.kernel.h", "accel/cuckoo/cuckoo_insert.kernel.h",
+        for (const char* file : {"integrators/path/path.radiance.h", "accel/cuckoo/cuckoo_insert.kernel.h",
                                  "accel/collect/collect.consumer.h+accel/kd_tree/kd_tree.gather.h"}) {
             SCOPED_TRACE(file);
             vulkan::ShaderOptions options;

@@ -32,7 +32,7 @@ class LimitedDevice final : public Device {
     DeviceSceneHandle upload(const Scene& scene) override { return inner_->upload(scene); }
     KernelHandle compile(std::string_view file, uint32_t effects) override {
         KernelHandle kernel = inner_->compile(file, effects);
-        for (const char* sampling : {"ao/ao.kernel.h", "path/path.kernel.h", "sppm/sppm_eye.kernel.h"})
+        for (const char* sampling : {"ao/ao.radiance.h", "path/path.radiance.h", "sppm/sppm_eye.kernel.h"})
             if (file.ends_with(sampling)) sampling_[kernel.get()] = std::string(file);
         return kernel;
     }

@@ -1,18 +1,17 @@
-// Direct light at a surface point from one sampled light: next-event estimation.
+// Direct light at a vertex from one sampled light: next-event estimation.
 #ifndef LAMPYRIS_KERNEL_DIRECT_LIGHT
 #define LAMPYRIS_KERNEL_DIRECT_LIGHT
 
 // `weighted`: by multiple importance sampling with the directions that bsdf_sample chooses; a path that takes no such sample
-// wants the whole. `medium`: through which s was reached. wo: local frame.
-FN vec3 direct_light(IN(Surface) s, IN(Frame) frame, IN(Bsdf) bsdf, vec3 wo, uint medium, uint u_choice, uvec2 u,
-                     bool weighted, INOUT(uint) rays) {
+// wants the whole. `medium`: through which the vertex was reached, at the surface s. u_choice and u: bits of random numbers.
+FN vec3 direct_light(IN(Surface) s, IN(Vertex) v, uint medium, uint u_choice, uvec2 u, bool weighted) {
     LightSample light;
     if (!light_sample(s.position, u_choice, u, light)) return vec3(0.0f);
-    vec3 wi = to_local(frame, light.wi);
+    vec3 wi = to_local(v.frame, light.wi);
     float density;
-    vec3 f = bsdf_eval_pdf(bsdf, wo, wi, TRANSPORT_RADIANCE, density) * abs(wi.z);
+    vec3 f = bsdf_eval_pdf(v.bsdf, v.wo, wi, TRANSPORT_RADIANCE, density) * abs(wi.z);
     if (is_black(f)) return vec3(0.0f);
-    vec3 arriving = scene_transmittance(s, light.wi, light.distance, light.end, medium, rays);
+    vec3 arriving = scene_transmittance(s, light.wi, light.distance, light.end, medium);
     if (is_black(arriving)) return vec3(0.0f);
     if (!weighted || light.is_delta != 0u) density = 0.0f;
     vec3 reflected = f * light.radiance * power_heuristic_over_pdf(light.pdf, density);

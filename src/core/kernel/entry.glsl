@@ -4,5 +4,12 @@ layout(push_constant) uniform KernelRange { uint begin; uint count; } kernel_ran
 
 void main() {
     uint place = gl_GlobalInvocationID.x;
-    if (place < kernel_range.count) kernel_main(kernel_range.begin + place);
+    if (place >= kernel_range.count) return;
+#ifdef LAMPYRIS_KERNEL_SCENE
+    invocation_begin();
+#endif
+    kernel_main(kernel_range.begin + place);
+#ifdef LAMPYRIS_KERNEL_SCENE
+    invocation_end();
+#endif
 }

@@ -47,6 +47,38 @@ FN void film_add_bias(INOUT(FilmBias) p, vec3 bias, float weight) {
     p.squares += vec4(value.x * value.x, value.y * value.y, value.z * value.z, 0.0f);
 }
 
+// What the first surface that a camera ray meets is like: channels of the image, for denoisers.
+struct FirstHit {
+    vec3 albedo;
+    vec3 normal;     // shading normal
+    float distance;  // from where the ray starts, in scene units
+    float met;       // 1, or 0 where the ray meets nothing
+};
+
+FN FirstHit no_first_hit() {
+    FirstHit f;
+    f.albedo = vec3(0.0f);
+    f.normal = vec3(0.0f);
+    f.distance = 0.0f;
+    f.met = 0.0f;
+    return f;
+}
+
+FN FirstHit first_hit(IN(Surface) s, vec3 albedo, float distance) {
+    FirstHit f;
+    f.albedo = albedo;
+    f.normal = s.ns;
+    f.distance = distance;
+    f.met = 1.0f;
+    return f;
+}
+
+FN void film_add_first_hit(INOUT(FilmPixel) p, IN(FirstHit) f) {
+    p.albedo += vec4(f.albedo.x, f.albedo.y, f.albedo.z, f.met);
+    p.normal += vec4(f.normal.x, f.normal.y, f.normal.z, 0.0f);
+    p.squares.w += f.distance;
+}
+
 // What the film makes of radiance before it is added: the sensor's imaging ratio and the clamp of `maxcomponentvalue`.
 FN vec3 film_sensor(vec3 radiance) {
     vec3 value = radiance * scene[0].camera.lens.w;

@@ -157,6 +157,9 @@ FN bool surface_at(IN(Hit) hit, vec3 o, vec3 d, INOUT(Surface) s) {
     return true;
 }
 
+// Rays that this invocation has traced.
+PRIVATE(uint, traced_rays, 1)
+
 // What a surface is to a ray.
 CONST uint SURFACE_STOPS = 0u;   // the ray ends here
 CONST uint SURFACE_PASSES = 1u;  // it is masked and lets this ray pass, by chance: another one might end here
@@ -190,9 +193,9 @@ FN uint surface_fate(float opacity, vec3 o, vec3 d) {
 FN bool is_interface(IN(Surface) s) { return materials[s.material].data.x == MATERIAL_INTERFACE; }
 
 // The next surface point that the ray meets, masked ones too, which may let it pass: `fate` is one of SURFACE_*.
-FN bool intersect_next(vec3 origin, vec3 direction, OUT(Surface) s, OUT(uint) fate, INOUT(uint) rays) {
+FN bool intersect_next(vec3 origin, vec3 direction, OUT(Surface) s, OUT(uint) fate) {
     Hit hit;
-    rays += 1u;
+    traced_rays[0] += 1u;
     fate = SURFACE_ABSENT;
     if (!trace_closest(origin, direction, INFINITE_DISTANCE, hit)) return false;
     if (!surface_at(hit, origin, direction, s)) return false;
@@ -201,12 +204,12 @@ FN bool intersect_next(vec3 origin, vec3 direction, OUT(Surface) s, OUT(uint) fa
 }
 
 // The first surface point that the ray meets; masked surfaces are passed, interfaces are not. Directions are unit length.
-// `rays` counts the rays that were traced. `origin` is where the last of them started, `hit` what it met: surface_at(hit, origin,
-// direction, s) finds the point again.
-FN bool intersect_scene_from(INOUT(vec3) origin, vec3 direction, OUT(Surface) s, OUT(Hit) hit, INOUT(uint) rays) {
+// `origin` becomes where the last ray started: surface_at, with it and the primitive in s, finds the point again.
+FN bool intersect_scene_from(INOUT(vec3) origin, vec3 direction, OUT(Surface) s) {
     float passed = 0.0f;
+    Hit hit;
     for (uint i = 0u; i < MAX_PASSED_SURFACES; ++i) {
-        rays += 1u;
+        traced_rays[0] += 1u;
         if (!trace_closest(origin, direction, INFINITE_DISTANCE, hit)) return false;
         if (!surface_at(hit, origin, direction, s)) return false;
         s.distance += passed;
@@ -218,10 +221,9 @@ FN bool intersect_scene_from(INOUT(vec3) origin, vec3 direction, OUT(Surface) s,
     return false;
 }
 
-FN bool intersect_scene(vec3 origin, vec3 direction, OUT(Surface) s, INOUT(uint) rays) {
-    vec3 o = origin;
-    Hit hit;
-    return intersect_scene_from(o, direction, s, hit, rays);
+FN bool intersect_scene(IN(Ray) ray, OUT(Surface) s) {
+    vec3 o = ray.origin;
+    return intersect_scene_from(o, ray.direction, s);
 }
 
 // In place of the medium in which a shadow ray starts: media on the way do not count.
@@ -239,7 +241,7 @@ FN float aim_at(vec3 o, vec3 end, INOUT(vec3) direction) {
 
 // shadow_ray where surfaces may let the ray pass.
 RARE_FN bool shadow_ray_through(vec3 start_o, vec3 start_direction, float distance, vec3 end, uint start,
-                                OUT(vec3) transmittance, INOUT(uint) rays) {
+                                OUT(vec3) transmittance) {
     transmittance = vec3(1.0f);
     vec3 o = start_o;
     vec3 direction = start_direction;
@@ -249,7 +251,7 @@ RARE_FN bool shadow_ray_through(vec3 start_o, vec3 start_direction, float distan
     for (uint i = 0u; i < MAX_PASSED_SURFACES; ++i) {
         Hit hit;
         Surface s;
-        rays += 1u;
+        traced_rays[0] += 1u;
         // Beyond each surface the ray starts a little aside of its line, and takes aim again.
         float t_max = distance < INFINITE_DISTANCE ? aim_at(o, end, direction) : INFINITE_DISTANCE;
         bool found = t_max > 0.0f && trace_closest(o, direction, t_max, hit) && surface_at(hit, o, direction, s);
@@ -280,17 +282,14 @@ RARE_FN bool shadow_ray_through(vec3 start_o, vec3 start_direction, float distan
 // Whether anything opaque lies between o, outside of a surface, and `end`, `distance` away along the unit direction and outside of
 // a surface, too, if there is one (shadow_end); INFINITE_DISTANCE has no end. If not, `transmittance` is what masked surfaces and
 // media on the way leave, `start` being the medium in which the ray starts.
-FN bool shadow_ray(vec3 o, vec3 direction, float distance, vec3 end, uint start, OUT(vec3) transmittance,
-                   INOUT(uint) rays) {
+FN bool shadow_ray(vec3 o, vec3 direction, float distance, vec3 end, uint start, OUT(vec3) transmittance) {
     if (HAS(EFFECT_ALPHA | EFFECT_INTERFACE) && RARELY(CALLED_FOR(EFFECT_ALPHA | EFFECT_INTERFACE))) {
         vec3 through;
-        uint traced = rays;
-        bool occluded = shadow_ray_through(o, direction, distance, end, start, through, traced);
-        rays = traced;
+        bool occluded = shadow_ray_through(o, direction, distance, end, start, through);
         transmittance = through;
         return occluded;
     }
-    rays += 1u;
+    traced_rays[0] += 1u;
     transmittance = vec3(1.0f);
     if (HAS(EFFECT_MEDIUM) && start != MEDIA_IGNORED) transmittance = medium_transmittance(start, distance);
     vec3 aimed = direction;
@@ -300,22 +299,22 @@ FN bool shadow_ray(vec3 o, vec3 direction, float distance, vec3 end, uint start,
 
 // How much a surface point sees of what lies `distance` away along the unit direction, whatever media lie between; the distance counts
 // from the point's rounding error on.
-FN float scene_openness(vec3 position, vec3 error, vec3 ng, vec3 direction, float distance, INOUT(uint) rays) {
+FN float scene_openness(IN(Surface) s, vec3 direction, float distance) {
     vec3 transmittance;
-    vec3 o = offset_origin(position, error, ng, direction);
+    vec3 o = origin_beyond(s.position, s.way, direction);
     bool limited = distance < 1e18f;  // no two points of a scene are so far apart, and the square is a float
     vec3 end = limited ? o + distance * direction : vec3(0.0f);
     float reach = limited ? distance : INFINITE_DISTANCE;
-    return shadow_ray(o, direction, reach, end, MEDIA_IGNORED, transmittance, rays) ? 0.0f : transmittance.x;
+    return shadow_ray(o, direction, reach, end, MEDIA_IGNORED, transmittance) ? 0.0f : transmittance.x;
 }
 
 // The share of light that comes to s from `end` (shadow_end), `distance` away along the unit direction. s was reached through
 // `medium`.
-FN vec3 scene_transmittance(IN(Surface) s, vec3 direction, float distance, vec3 end, uint medium, INOUT(uint) rays) {
+FN vec3 scene_transmittance(IN(Surface) s, vec3 direction, float distance, vec3 end, uint medium) {
     vec3 transmittance;
     uint start = medium_behind(s, direction, medium);
     vec3 o = origin_beyond(s.position, s.way, direction);
-    bool occluded = shadow_ray(o, direction, distance, end, start, transmittance, rays);
+    bool occluded = shadow_ray(o, direction, distance, end, start, transmittance);
     return occluded ? vec3(0.0f) : transmittance;
 }
 

@@ -49,6 +49,7 @@
 // A kernel says that it could not do all of its work (a loop's bound or a stack was not enough, or the driver ended a loop
 // early: Mesa 22 does after 65,535 iterations). Device::run then throws; an image is never silently dark.
 #define REPORT_UNFINISHED() report_unfinished(unfinished_)
+CONST bool DRIVERS_END_LOOPS = false;
 #else
 #define IN(T) in T
 #define OUT(T) out T
@@ -87,6 +88,7 @@
 #define PREFETCH(place)
 layout(std430, set = 0, binding = 17) restrict buffer UnfinishedBlock { uint unfinished_[]; };
 #define REPORT_UNFINISHED() atomicOr(unfinished_[0], 1u)
+const bool DRIVERS_END_LOOPS = true;
 uint mul_high(uint a, uint b) {
     uint high;
     uint low;

@@ -22,5 +22,15 @@
 #include "core/kernel/light.h"
 #include "core/kernel/emission.h"
 #include "core/kernel/camera.h"
+#include "core/kernel/walk.h"
+#include "core/kernel/direct_light.h"
+
+// Whoever runs a kernel that reads the scene calls these around each invocation (entry.glsl, cpu_kernel.cpp.in).
+FN void invocation_begin() {
+    traced_rays[0] = 0u;
+    walk_turn[0] = 0u;
+    walk_turns[0] = 0u;
+}
+FN void invocation_end() { walk_check(); }
 
 #endif

@@ -9,6 +9,13 @@ struct Ray {
     vec3 direction;  // unit length, except inside instances and quadrics
 };
 
+FN Ray ray_of(vec3 origin, vec3 direction) {
+    Ray ray;
+    ray.origin = origin;
+    ray.direction = direction;
+    return ray;
+}
+
 // The tracer's answer, reduced to the primitive.
 struct Hit {
     uint instance;

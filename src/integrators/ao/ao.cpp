@@ -8,7 +8,7 @@ class Ao : public Integrator {
  public:
     AoParams params;
     void render(RenderSession& session) override {
-        render_samples(session, "integrators/ao/ao.kernel.h", &params, sizeof(params));
+        render_samples(session, "integrators/ao/ao.radiance.h", &params, sizeof(params));
     }
 };
 

@@ -8,7 +8,7 @@ class Path : public Integrator {
  public:
     PathParams params;
     void render(RenderSession& session) override {
-        render_samples(session, "integrators/path/path.kernel.h", &params, sizeof(params));
+        render_samples(session, "integrators/path/path.radiance.h", &params, sizeof(params));
     }
 };
 

@@ -31,24 +31,20 @@ KERNEL(photon_map_rays) {
         SppmHit hit = hits[index];
         vec3 direction = hit_direction(hit);
         Surface s = hit_surface(hit);
-        Surface shaded = s;
-        Frame frame;
-        Bsdf bsdf = material_bsdf(shaded, -direction, frame);
-        vec3 wo = to_local(frame, -direction);
+        Vertex v = vertex_at(s, direction);
         uint x = w.pixels.x + index % w.pixels.z;
         uint y = w.pixels.y + index / w.pixels.z;
         // Rays of all passes are one stratified set.
         Sampler numbers =
             sampler_begin(y * scene[0].camera.film.x + x, w.samples.x, w.samples.z ^ GATHER_STREAM, w.samples.w);
-        EyePath path = eye_path_begin(s.position, direction, hit.more.z);
-        path.depth = int(hit.more.w);
+        EyePath path = eye_path_begin(ray_of(s.position, direction), hit.more.z);
+        path.walk.depth = int(hit.more.w) - 1;
         // A specular lobe here is the eye path's: what comes over it is followed from the camera.
-        if (eye_path_scatters(s, frame, bsdf, wo, numbers, EYE_LOBES_OTHER, path)) {
-            FilmPixel pixel = film[index];
-            uint rays = 0u;
-            follow_eye_path(numbers, false, EYE_BRANCH_CHANCE, path, pixel, end, query, rays);
-            end.throughput = vec4(path.throughput.x, path.throughput.y, path.throughput.z, 1.0f);
-            film[index].counts.y += rays;
+        if (eye_path_scatters(s, v, numbers, EYE_LOBES_OTHER, path.walk)) {
+            FirstHit unseen = no_first_hit();
+            follow_eye_path(numbers, false, EYE_BRANCH_CHANCE, path, unseen, end, query);
+            end.throughput = vec4(path.walk.throughput.x, path.walk.throughput.y, path.walk.throughput.z, 1.0f);
+            film[index].counts.y += traced_rays[0];
         }
     }
     ends[index] = end;

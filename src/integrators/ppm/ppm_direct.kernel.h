@@ -5,7 +5,6 @@
 // clang-format on
 #include "core/kernel/scene.h"
 
-#include "core/kernel/direct_light.h"
 #include "core/kernel/film.h"
 #include "core/kernel/photon.h"
 #include "integrators/sppm/hit_point.functions.h"
@@ -26,7 +25,6 @@ KERNEL(ppm_direct) {
     uint pixels = w.pixels.z * w.pixels.w;
     uint pass = passes[0].photons.z;
     uint points = passes[0].counts.z;
-    uint rays = 0u;
     uint i = 0u;
     for (; i < w.samples.y; ++i) {
         uint point = w.samples.x + i;
@@ -36,20 +34,18 @@ KERNEL(ppm_direct) {
         SppmHit hit = hits[at];
         vec3 direction = hit_direction(hit);
         Surface s = hit_surface(hit);
-        Frame frame;
-        Bsdf bsdf = material_bsdf(s, -direction, frame);
+        Vertex v = vertex_at(s, direction);
         // The points of all passes are one stratified set.
         Sampler numbers = sampler_begin(y * scene[0].camera.film.x + x, pass * points + point,
                                         w.samples.z ^ DIRECT_STREAM, w.samples.w);
         // A light without extent is found in the same direction again.
-        bsdf.walk = hash_combine(numbers.key, numbers.index);
+        v.bsdf.walk = hash_combine(numbers.key, numbers.index);
         uint u_light = 0u;
         if (light_choice_needs_number()) u_light = sample_bits_1d_at(numbers, 0u);
-        vec3 arriving = direct_light(s, frame, bsdf, to_local(frame, -direction), hit.more.z, u_light,
-                                     sample_bits_2d_at(numbers, 1u), false, rays);
+        vec3 arriving = direct_light(s, v, hit.more.z, u_light, sample_bits_2d_at(numbers, 1u), false);
         vec3 radiance = vec3(ways[at]) + vec3(hit.throughput) * arriving;
         hits[at].radiance = vec4(radiance.x, radiance.y, radiance.z, hit.radiance.w);
     }
     if (i != w.samples.y) REPORT_UNFINISHED();
-    film[index].counts.y += rays;
+    film[index].counts.y += traced_rays[0];
 }

@@ -6,18 +6,16 @@
 #include "integrators/sppm/sppm.layout.h"
 
 struct HitPoint {
-    Bsdf bsdf;
-    Frame frame;
-    vec3 wo;  // local
+    Vertex vertex;
     vec3 ng;  // on the side that the eye is on
     uint both_sides;
 };
 
 FN HitPoint no_hit_point() {
     HitPoint p;
-    p.bsdf = bsdf_interface();
-    p.frame = frame_from_z(vec3(0.0f, 0.0f, 1.0f));
-    p.wo = vec3(0.0f);
+    p.vertex.bsdf = bsdf_interface();
+    p.vertex.frame = frame_from_z(vec3(0.0f, 0.0f, 1.0f));
+    p.vertex.wo = vec3(0.0f);
     p.ng = vec3(0.0f);
     p.both_sides = 0u;
     return p;
@@ -43,9 +41,8 @@ FN HitPoint hit_point(IN(SppmHit) h) {
     Surface s = hit_surface(h);
     HitPoint p;
     p.ng = dot3(s.ng, direction) > 0.0f ? -s.ng : s.ng;
-    p.bsdf = material_bsdf(s, -direction, p.frame);
-    p.wo = to_local(p.frame, -direction);
-    p.both_sides = bsdf_transmits(p.bsdf) ? 1u : 0u;
+    p.vertex = vertex_at(s, direction);
+    p.both_sides = bsdf_transmits(p.vertex.bsdf) ? 1u : 0u;
     return p;
 }
 
@@ -57,8 +54,8 @@ FN vec4 hit_point_reflects(IN(HitPoint) p, IN(PhotonRecord) photon, float weight
     vec3 incident = -photon_direction(photon);
     float cosine = dot3(incident, p.ng);
     if (!hit_point_sees(p, cosine)) return vec4(0.0f);
-    vec3 wi = to_local(p.frame, incident);
-    vec3 f = bsdf_eval(p.bsdf, p.wo, wi, TRANSPORT_RADIANCE);
+    vec3 wi = to_local(p.vertex.frame, incident);
+    vec3 f = bsdf_eval(p.vertex.bsdf, p.vertex.wo, wi, TRANSPORT_RADIANCE);
     // Photons are counted on the geometric surface, the BSDF wants the shading normal's cosine (clamped where grazing).
     vec3 value = f * photon_power(photon) * (weight * abs(wi.z) / max(abs(cosine), GRAZING_COSINE));
     return vec4(value.x, value.y, value.z, weight);

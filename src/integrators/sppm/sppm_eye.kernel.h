@@ -30,16 +30,17 @@ KERNEL(sppm_eye) {
         hit.more = uvec4(0u);
         hit.radiance = vec4(0.0f);
         vec4 query;
-        uint rays = 0u;
-        EyePath path = eye_path_begin(camera.ray.origin, camera.ray.direction, camera_medium());
+        EyePath path = eye_path_begin(camera.ray, camera_medium());
+        FirstHit first = no_first_hit();
         uint branch = EYE_BRANCH_CHANCE;
         if (branches == 2u) branch = i % 2u == 0u ? EYE_BRANCH_GATHERS : EYE_BRANCH_FOLLOWS;
-        follow_eye_path(camera.numbers, true, branch, path, pixel, hit, query, rays);
-        hit.throughput = vec4(path.throughput.x, path.throughput.y, path.throughput.z, camera.weight);
-        pixel.counts.y += rays;
+        follow_eye_path(camera.numbers, true, branch, path, first, hit, query);
+        hit.throughput = vec4(path.walk.throughput.x, path.walk.throughput.y, path.walk.throughput.z, camera.weight);
+        film_add_first_hit(pixel, first);
         hits[at] = hit;
         queries[at] = query;
     }
     if (i != count) REPORT_UNFINISHED();
+    pixel.counts.y += traced_rays[0];
     film[place] = pixel;
 }

@@ -16,8 +16,12 @@ BUFFER_RO(1, SppmParams, params)
 BUFFER_RW(2, PhotonRecord, photons)
 BUFFER_RW(3, uint, counters)
 
-CONST uint PHOTON_VERTEX_DIMENSIONS = 4u;
 CONST uint PHOTON_STREAM = 0x5f3759dfu;  // keeps the numbers apart from those of pixels
+// The numbers of a vertex.
+CONST uint PHOTON_LOBE = 0u;
+CONST uint PHOTON_DIRECTION = 1u;
+CONST uint PHOTON_ROULETTE = 3u;
+CONST uint PHOTON_VERTEX_DIMENSIONS = 4u;
 
 FN bool in_box(vec3 p, vec4 low, vec4 high) {
     return p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y && p.z <= high.z;
@@ -38,78 +42,36 @@ KERNEL(sppm_photons) {
     uvec2 u_direction = sample_bits_2d_at(numbers, 4u);
     Emission start;
     if (!emit_photon(u_choice, sample_1d_at(numbers, 1u), sample_2d_at(numbers, 2u), u_direction, start)) return;
-    vec3 origin = start.origin;
-    vec3 direction = start.direction;
-    vec3 power = start.power / float(pass.counts.x);
-    uint rays = 0u;
-    int depth = 0;
+    Walk walk =
+        walk_begin(ray_of(start.origin, start.direction), start.medium, TRANSPORT_IMPORTANCE, params[0].maxdepth);
+    walk.throughput = start.power / float(pass.counts.x);
     uint kept = 0u;
-    uint passed = 0u;  // interfaces and masks
-    uint medium = start.medium;
-    uint vertices = uint(params[0].maxdepth) + MAX_PASSED_SURFACES + 1u;  // more than a path has
-    uint vertex = 0u;
-    while (vertex < vertices) {
-        vertex = vertices;
-        Surface s;
-        uint fate;
-        if (!intersect_next(origin, direction, s, fate, rays)) break;
-        if (HAS(EFFECT_MEDIUM)) power *= medium_transmittance(medium, s.distance);
-        if (HAS(EFFECT_MEDIUM) && is_black(power)) break;
+    Surface s;
+    uint fate;
+    while (walk_next_or_mask(walk, s, fate)) {
+        if (HAS(EFFECT_MEDIUM) && is_black(walk.throughput)) break;
         if (fate != SURFACE_ABSENT && material_may_gather(s.material, params[0].glossy) &&
-            (depth > 0 || pass.keep.x == SPPM_KEEP_ALL) && in_box(s.position, pass.low, pass.high)) {
-            keep_photon(s.position, direction, power, photon_key(index, kept, pass.counts.w));
+            (walk.depth > 0 || pass.keep.x == SPPM_KEEP_ALL) && in_box(s.position, pass.low, pass.high)) {
+            keep_photon(s.position, walk.ray.direction, walk.throughput, photon_key(index, kept, pass.counts.w));
             kept += 1u;
         }
-        bool crosses = HAS(EFFECT_INTERFACE) && fate == SURFACE_STOPS && is_interface(s);
-        if (crosses || fate != SURFACE_STOPS) {
-            origin = origin_beyond(s.position, s.way, direction);
-            if (crosses) medium = medium_behind(s, direction, medium);
-            if (++passed > MAX_PASSED_SURFACES) {
-                REPORT_UNFINISHED();
-                break;
-            }
-            vertex = uint(depth) + passed;
-            continue;
-        }
-        vec3 ng = s.ng;
-        Frame frame;
-        Bsdf bsdf = material_bsdf(s, -direction, frame);
-        uint action = visible_action(bsdf, params[0].glossy);
+        if (walk_crosses_or_passes(walk, s, fate)) continue;
+        Vertex v = walk_vertex(walk, s);
+        uint action = visible_action(v.bsdf, params[0].glossy);
         // What is reflected here is no caustic, but for the smooth coat over it: that is known once a lobe is chosen.
-        if (depth >= params[0].maxdepth || (pass.keep.x == SPPM_KEEP_CAUSTIC && action == VISIBLE_GATHER)) break;
-        uint dimension = EMISSION_DIMENSIONS + uint(depth) * PHOTON_VERTEX_DIMENSIONS;
-        depth += 1;
+        bool ends = pass.keep.x == SPPM_KEEP_CAUSTIC && action == VISIBLE_GATHER;
+        if (walk.depth >= walk.maxdepth || ends) break;
 
-        // wo is where the light comes from: importance flows as a camera's path does.
-        vec3 wo = to_local(frame, -direction);
+        // v.wo is where the light comes from: importance flows as a camera's path does.
+        uint dimension = EMISSION_DIMENSIONS + uint(walk.depth) * PHOTON_VERTEX_DIMENSIONS;
         BsdfSample next;
         float u_lobe = 0.0f;
-        if (bsdf_chooses_lobe(bsdf)) u_lobe = sample_1d_at(numbers, dimension);
-        if (!bsdf_sample(bsdf, wo, u_lobe, sample_2d_at(numbers, dimension + 1u), TRANSPORT_IMPORTANCE, next)) break;
+        if (bsdf_chooses_lobe(v.bsdf)) u_lobe = sample_1d_at(numbers, dimension + PHOTON_LOBE);
+        vec2 u_direction = sample_2d_at(numbers, dimension + PHOTON_DIRECTION);
+        if (!bsdf_sample(v.bsdf, v.wo, u_lobe, u_direction, TRANSPORT_IMPORTANCE, next)) break;
         if (pass.keep.x == SPPM_KEEP_CAUSTIC && action == VISIBLE_SPLIT && (next.lobe & LOBE_SPECULAR) == 0u) break;
-        vec3 onward = unit(to_world(frame, next.wi));
-        // Shading normals are not symmetric (Veach 1997, equation 5.19): |wi.Ns wo.Ng| / (|wi.Ng| |wo.Ns|), of which |wo.Ns|
-        // cancels the cosine of the weight. wi is towards the light, wo onward.
-        float towards = abs_dot(direction, ng);
-        if (!(towards > 0.0f)) break;
-        vec3 weight = next.f * (abs(wo.z) * abs_dot(onward, ng) / (towards * next.pdf));
-        float before = max_component(power);
-        power *= weight;
-        float after = max_component(power);
-        if (!(after > 0.0f) || !is_finite(after)) break;
-        // Photons keep about the power that they had: few, bright ones would be noise.
-        float survival = after / before;
-        if (survival < 1.0f) {
-            survival = exact_chance(survival);
-            if (sample_1d_at(numbers, dimension + 3u) >= survival) break;
-            power = power / survival;
-        }
-        direction = onward;
-        origin = offset_origin(s.position, s.error, ng, direction);
-        medium = medium_behind(s, direction, medium);
-        vertex = uint(depth) + passed;
+        if (!walk_leave(walk, s, v, next, 0, numbers, dimension + PHOTON_ROULETTE)) break;
     }
-    if (vertex != vertices) REPORT_UNFINISHED();  // the driver ended the loop
     if (HAS(EFFECT_ALPHA) && kept > counters[SPPM_MOST_KEPT]) ATOMIC_MAX_U32(counters[SPPM_MOST_KEPT], kept);
-    ATOMIC_ADD_U32(counters[SPPM_RAYS], rays);
+    ATOMIC_ADD_U32(counters[SPPM_RAYS], traced_rays[0]);
 }

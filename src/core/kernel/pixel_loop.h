@@ -1,0 +1,22 @@
+// Adds a range of samples to a pixel: the end of every kernel that is made of a radiance function (core/kernel/radiance.h).
+
+BUFFER_RO(0, FilmWindow, window)
+BUFFER_RW(2, FilmPixel, film)
+
+KERNEL(pixel_loop) {
+    FilmWindow w = window[0];
+    uvec2 local = film_pixel_of(index, w.pixels);
+    uint at = local.y * w.pixels.z + local.x;
+    FilmPixel pixel = film[at];
+    uint i = 0u;
+    for (; i < w.samples.y; ++i) {
+        CameraSample camera = camera_sample(w, local, i);
+        FirstHit first = no_first_hit();
+        vec3 radiance = radiance_along(camera.ray, camera.numbers, first);
+        film_add_first_hit(pixel, first);
+        film_add(pixel, film_sensor(radiance), camera.weight, camera.pass);
+    }
+    if (i != w.samples.y) REPORT_UNFINISHED();
+    pixel.counts.y += traced_rays[0];
+    film[at] = pixel;
+}

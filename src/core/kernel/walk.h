@@ -1,0 +1,176 @@
+// Walking through the scene from surface to surface: what camera paths, eye paths and photons have in common.
+//
+//     Walk walk = walk_begin(ray, medium, TRANSPORT_RADIANCE, maxdepth);
+//     Surface s;
+//     while (walk_next(walk, s)) {                // the next surface that stops the ray
+//         ...                                     // what it emits
+//         if (walk_crosses(walk, s)) continue;    // it only bounds a medium
+//         Vertex v = walk_vertex(walk, s);
+//         if (walk.depth >= maxdepth) break;
+//         ...                                     // what arrives here from lights, or from photons
+//         BsdfSample next;
+//         if (!bsdf_sample(v.bsdf, v.wo, u_lobe, u, walk.transport, next)) break;
+//         if (!walk_leave(walk, s, v, next, rrdepth, numbers, dimension)) break;
+//     }
+//     if (walk.escaped) ...                       // the environment
+//
+// The walk attenuates its throughput in media, starts rays outside of rounding errors, bounds the number of surfaces that it
+// meets, and reports a loop that the driver ended early.
+#ifndef LAMPYRIS_KERNEL_WALK
+#define LAMPYRIS_KERNEL_WALK
+
+struct Walk {
+    Ray ray;          // leaves the last vertex, or the last surface that let it pass
+    vec3 throughput;  // radiance: the weight of what arrives along the ray; importance: the power that it carries
+    float eta_scale;  // undoes the scaling of radiance on refraction: roulette must not see it
+    uint transport;   // TRANSPORT_*: radiance flows against the ray, importance along it
+    uint medium;      // that the ray is in
+    int depth;        // scattering vertices so far
+    int maxdepth;     // at most
+    uint passed;      // masks and interfaces so far
+    bool escaped;     // the ray left the scene
+};
+
+// A point where the walk may scatter. Directions are local to `frame` (z: shading normal) and point away from the surface.
+struct Vertex {
+    Bsdf bsdf;
+    Frame frame;
+    vec3 wo;  // where the walk came from
+};
+
+// ---- Loops that a driver ends ----------------------------------------------------------------------------------------
+// A turn sets walk_turn to walk_turns, and back once it is known that another one follows: whoever leaves the loop leaves it
+// there. A loop that was ended by the driver does not. Not in Walk, so that whoever writes a loop need not think of it.
+
+PRIVATE(uint, walk_turn, 1)
+PRIVATE(uint, walk_turns, 1)
+
+FN void walk_check() {
+    if (DRIVERS_END_LOOPS && walk_turn[0] != walk_turns[0]) REPORT_UNFINISHED();
+}
+
+FN void walk_opens(IN(Walk) w) {
+    if (!DRIVERS_END_LOOPS) return;
+    walk_check();  // of the walk before
+    walk_turn[0] = 0u;
+    walk_turns[0] = uint(w.maxdepth) + MAX_PASSED_SURFACES + 2u;  // more than it has
+}
+
+FN bool walk_takes_turn(IN(Walk) w) {
+    if (HAS(EFFECT_INTERFACE | EFFECT_ALPHA) && w.passed > MAX_PASSED_SURFACES) return false;
+    if (!DRIVERS_END_LOOPS) return true;
+    if (!(walk_turn[0] < walk_turns[0])) return false;
+    walk_turn[0] = walk_turns[0];
+    return true;
+}
+
+FN void walk_goes_on(IN(Walk) w) {
+    if (DRIVERS_END_LOOPS) walk_turn[0] = uint(w.depth) + w.passed;
+}
+
+// ---- The walk --------------------------------------------------------------------------------------------------------
+
+FN Walk walk_begin(IN(Ray) ray, uint medium, uint transport, int maxdepth) {
+    Walk w;
+    w.ray = ray;
+    w.throughput = vec3(1.0f);
+    w.eta_scale = 1.0f;
+    w.transport = transport;
+    w.medium = medium;
+    w.depth = 0;
+    w.maxdepth = maxdepth;
+    w.passed = 0u;
+    w.escaped = false;
+    walk_opens(w);
+    return w;
+}
+
+// The next surface that the ray meets, masked ones too, which may let it pass: `fate` is one of SURFACE_*. False where the
+// walk is over.
+FN bool walk_next_or_mask(INOUT(Walk) w, OUT(Surface) s, OUT(uint) fate) {
+    if (!walk_takes_turn(w)) return false;
+    w.escaped = !intersect_next(w.ray.origin, w.ray.direction, s, fate);
+    if (w.escaped) return false;
+    if (HAS(EFFECT_MEDIUM)) w.throughput *= medium_transmittance(w.medium, s.distance);
+    return true;
+}
+
+// The next surface that stops the ray.
+FN bool walk_next(INOUT(Walk) w, OUT(Surface) s) {
+    if (!walk_takes_turn(w)) return false;
+    w.escaped = !intersect_scene_from(w.ray.origin, w.ray.direction, s);
+    if (HAS(EFFECT_MEDIUM)) w.throughput *= medium_transmittance(w.medium, w.escaped ? INFINITE_DISTANCE : s.distance);
+    return !w.escaped;
+}
+
+// Leaves s straight on.
+FN void walk_passes(INOUT(Walk) w, IN(Surface) s) {
+    w.ray.origin = origin_beyond(s.position, s.way, w.ray.direction);
+    w.passed += 1u;
+    if (w.passed <= MAX_PASSED_SURFACES)
+        walk_goes_on(w);
+    else
+        REPORT_UNFINISHED();
+}
+
+// Whether s only bounds a medium; then the walk is beyond it.
+FN bool walk_crosses(INOUT(Walk) w, IN(Surface) s) {
+    if (!HAS(EFFECT_INTERFACE) || !is_interface(s)) return false;
+    w.medium = medium_behind(s, w.ray.direction, w.medium);
+    walk_passes(w, s);
+    return true;
+}
+
+FN bool walk_crosses_or_passes(INOUT(Walk) w, IN(Surface) s, uint fate) {
+    if (fate == SURFACE_STOPS) return walk_crosses(w, s);
+    walk_passes(w, s);
+    return true;
+}
+
+// The vertex at s, which was reached in the given direction. The surface's shading normal becomes that of a bump or normal map,
+// its material that of a mix which was chosen.
+FN Vertex vertex_at(INOUT(Surface) s, vec3 direction) {
+    Vertex v;
+    v.bsdf = material_bsdf(s, -direction, v.frame);
+    v.wo = to_local(v.frame, -direction);
+    return v;
+}
+
+FN Vertex walk_vertex(IN(Walk) w, INOUT(Surface) s) { return vertex_at(s, w.ray.direction); }
+
+// What a sampled direction does to the throughput: the BSDF over its density, times what shading normals ask of the transport.
+FN vec3 vertex_weight(IN(Walk) w, IN(Surface) s, IN(Vertex) v, IN(BsdfSample) next, vec3 onward) {
+    if (w.transport == TRANSPORT_RADIANCE) return next.f * (abs(next.wi.z) / next.pdf);
+    // Shading normals are not symmetric (Veach 1997, equation 5.19): |wi.Ns wo.Ng| / (|wi.Ng| |wo.Ns|), of which |wo.Ns|
+    // cancels the cosine of the weight. wi is towards the light, wo onward.
+    float towards = abs_dot(w.ray.direction, s.ng);
+    return towards > 0.0f ? next.f * (abs(v.wo.z) * abs_dot(onward, s.ng) / (towards * next.pdf)) : vec3(0.0f);
+}
+
+// Goes on from s in a sampled direction, unless Russian roulette ends the walk, which it may after `rrdepth` vertices; it takes
+// the number of `dimension`. Radiance survives by its throughput. Importance survives by what is left of its power, so that
+// photons keep about the power that they had: few, bright ones would be noise. The last thing in a turn.
+FN bool walk_leave(INOUT(Walk) w, IN(Surface) s, IN(Vertex) v, IN(BsdfSample) next, int rrdepth, IN(Sampler) numbers,
+                   uint dimension) {
+    vec3 onward = unit(to_world(v.frame, next.wi));
+    float before = max_component(w.throughput);
+    w.throughput *= vertex_weight(w, s, v, next, onward);
+    if ((next.lobe & LOBE_TRANSMISSION) != 0u) w.eta_scale *= sqr(next.eta);
+    float after = max_component(w.throughput);
+    float survival = w.transport == TRANSPORT_RADIANCE ? after * w.eta_scale : after / before;
+    w.depth += 1;
+    if (!(survival > 0.0f) || w.depth > w.maxdepth) return false;
+    if (w.transport == TRANSPORT_IMPORTANCE && !is_finite(after)) return false;
+    if (w.depth > rrdepth && survival < 1.0f) {
+        survival = exact_chance(survival);
+        if (sample_1d_at(numbers, dimension) >= survival) return false;
+        w.throughput = w.throughput / survival;
+    }
+    w.ray.direction = onward;
+    w.ray.origin = origin_beyond(s.position, s.way, onward);
+    w.medium = medium_behind(s, onward, w.medium);
+    walk_goes_on(w);
+    return true;
+}
+
+#endif

@@ -1,0 +1,22 @@
+// Ambient occlusion: the cosine-weighted share of the hemisphere, on the viewer's side, that a point sees.
+#include "core/kernel/radiance.h"
+
+#include "integrators/ao/ao.params.h"
+
+BUFFER_RO(1, AoParams, params)
+
+FN vec3 radiance_along(IN(Ray) ray, INOUT(Sampler) numbers, INOUT(FirstHit) first) {
+    Surface s;
+    if (!intersect_scene(ray, s)) return vec3(0.0f);
+    first = first_hit(s, vec3(0.0f), s.distance);
+    Frame frame = frame_from_z(face_forward(s.ng, -ray.direction));
+    float limit = min(params[0].distance, INFINITE_DISTANCE);
+    float seen = 0.0f;
+    int k = 0;
+    for (; k < params[0].rays; ++k) {
+        vec3 direction = to_world(frame, sample_cosine_hemisphere(sample_2d(numbers)));
+        seen += scene_openness(s, direction, limit);
+    }
+    if (k != params[0].rays) REPORT_UNFINISHED();
+    return vec3(seen / float(params[0].rays));
+}

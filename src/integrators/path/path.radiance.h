@@ -1,0 +1,67 @@
+// Path tracing with next-event estimation, multiple importance sampling (Veach 1997, chapters 9 and 10) and Russian
+// roulette.
+// clang-format off
+#define KERNEL_CPU_VARIANTS kAllEffects, kTexturedEffects, kGlassEffects, kSkyEffects, kGlassEffects | EFFECT_COAT, kDiffuseEffects | EFFECT_QUADRICS, kDiffuseEffects | EFFECT_QUADRICS | EFFECT_DIELECTRIC, kDiffuseEffects | EFFECT_TEXTURES | EFFECT_IMAGES
+// clang-format on
+#include "core/kernel/radiance.h"
+
+#include "integrators/path/path.params.h"
+
+BUFFER_RO(1, PathParams, params)
+
+// Each vertex has a fixed number of dimensions, so that a dimension means the same in every sample, whatever the path met
+// before. For the direction and for the point on a light: no term of the radiance depends on both.
+CONST uint PATH_DIRECTION_AND_LIGHT = 0u;
+CONST uint PATH_LIGHT_CHOICE = 4u;
+CONST uint PATH_LOBE = 5u;
+CONST uint PATH_ROULETTE = 6u;
+CONST uint PATH_VERTEX_DIMENSIONS = 8u;
+
+FN vec3 radiance_along(IN(Ray) ray, INOUT(Sampler) numbers, INOUT(FirstHit) first) {
+    Walk walk = walk_begin(ray, camera_medium(), TRANSPORT_RADIANCE, params[0].maxdepth);
+    vec3 radiance = vec3(0.0f);
+    vec3 previous = ray.origin;        // the vertex before, where lights were sampled
+    float bsdf_density = 0.0f;         // pdf (solid angle) with which the ray's direction was sampled
+    bool lights_were_sampled = false;  // so that what the ray finds by chance shares its weight
+    Surface s;
+    while (walk_next(walk, s)) {
+        vec3 direction = walk.ray.direction;
+        vec3 emitted = light_emission(s, -direction);
+        if (!is_black(emitted)) {
+            float weight =
+                lights_were_sampled ? power_heuristic(bsdf_density, light_pdf(s, previous, direction)) : 1.0f;
+            radiance += walk.throughput * emitted * weight;
+        }
+        if (walk_crosses(walk, s)) continue;
+        Vertex v = walk_vertex(walk, s);
+        if (walk.depth == 0) first = first_hit(s, bsdf_albedo(v.bsdf), distance_of(s.position, ray.origin));
+        if (walk.depth >= walk.maxdepth) break;
+        uint dimension = CAMERA_DIMENSIONS + uint(walk.depth) * PATH_VERTEX_DIMENSIONS;
+        uvec4 u = sample_bits_2d_2d_at(numbers, dimension + PATH_DIRECTION_AND_LIGHT);
+
+        lights_were_sampled = !bsdf_is_specular(v.bsdf);
+        if (lights_were_sampled && scene[0].lights.x > 0u) {
+            uint u_light = 0u;
+            if (light_choice_needs_number()) u_light = sample_bits_1d_at(numbers, dimension + PATH_LIGHT_CHOICE);
+            radiance += walk.throughput * direct_light(s, v, walk.medium, u_light, uvec2(u.z, u.w), true);
+        }
+
+        BsdfSample next;
+        float u_lobe = 0.0f;
+        if (bsdf_chooses_lobe(v.bsdf)) u_lobe = sample_1d_at(numbers, dimension + PATH_LOBE);
+        if (!bsdf_sample(v.bsdf, v.wo, u_lobe, unit_floats(uvec2(u.x, u.y)), TRANSPORT_RADIANCE, next)) break;
+        bsdf_density = next.pdf_is_proportional != 0u ? bsdf_pdf(v.bsdf, v.wo, next.wi, TRANSPORT_RADIANCE) : next.pdf;
+        if ((next.lobe & LOBE_SPECULAR) != 0u) lights_were_sampled = false;
+        previous = s.position;
+        if (!walk_leave(walk, s, v, next, params[0].rrdepth, numbers, dimension + PATH_ROULETTE)) break;
+    }
+    if (HAS(EFFECT_ENVIRONMENT) && walk.escaped) {
+        vec3 emitted = environment_radiance(walk.ray.direction);
+        if (!is_black(emitted)) {
+            float weight =
+                lights_were_sampled ? power_heuristic(bsdf_density, environment_pdf(walk.ray.direction)) : 1.0f;
+            radiance += walk.throughput * emitted * weight;
+        }
+    }
+    return radiance;
+}
