@@ -43,7 +43,7 @@ int run(const std::string& file, int width, int height, uint32_t samples, bool e
 
     const uint32_t pixels = uint32_t(width) * uint32_t(height);
     std::vector<kernel::FilmPixel> film(pixels);
-    kernel::FilmWindow window{{0, 0, uint32_t(width), uint32_t(height)}, {0, samples, 0, kernel::SAMPLER_SOBOL}};
+    kernel::FilmWindow window{0, 0, uint32_t(width), uint32_t(height), 0, samples, 0, kernel::SAMPLER_SOBOL};
     uint32_t unfinished = 0;
     void* buffers[] = {&window, &params, film.data()};
     CpuInvocation call;

@@ -28,7 +28,7 @@ void render_samples(RenderSession& session, const char* kernel_file, const void*
     SampleSlices slices(device, session.film);
     while (const uint32_t count = session.next_passes()) {
         slices.run(uint32_t(session.next_pass()), count, [&](uint32_t first, uint32_t samples) {
-            const kernel::FilmWindow slice{session.film.window(), {first, samples, session.seed, session.sampler}};
+            const kernel::FilmWindow slice = session.window(first, samples);
             window->upload(&slice, sizeof(slice));
             device.run(*kernel, session.device_scene.get(), buffers, 0, session.film.pixel_count());
         });

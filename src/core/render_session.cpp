@@ -22,6 +22,11 @@ RenderSession::RenderSession(Device& device_, const Scene& scene_, DeviceSceneHa
     progress_.forecast = forecast_halving({}, error_rate);
 }
 
+kernel::FilmWindow RenderSession::window(uint32_t first, uint32_t samples) const {
+    const glm::uvec4 pixels = film.window();
+    return {pixels.x, pixels.y, pixels.z, pixels.w, first, samples, seed, sampler};
+}
+
 uint32_t RenderSession::next_passes() {
     if (interrupt_requested()) interrupted_ = true;
     if (interrupted_ || progress_.finished) return 0;

@@ -74,6 +74,8 @@ class RenderSession {
     // The number of the next pass. It counts from 0, or from `first` (for replaying one pass alone).
     uint64_t next_pass() const { return first_pass_ + progress_.passes; }
     void start_at(uint64_t first) { first_pass_ = first; }
+    // The film's part of the image, and so many samples from `first` on, for kernels.
+    kernel::FilmWindow window(uint32_t first, uint32_t samples) const;
     const RenderProgress& progress() const { return progress_; }
     bool interrupted() const { return interrupted_; }
     // Cancelled came out of a pass: what is in the film counts, the pass does not.

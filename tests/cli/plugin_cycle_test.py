@@ -25,10 +25,10 @@ BUFFER_RO(0, FilmWindow, window)
 BUFFER_RO(1, FlatParams, params)
 BUFFER_RW(2, FilmPixel, film)
 KERNEL(flat) {
-    float n = float(window[0].samples.y);
+    float n = float(window[0].samples);
     float v = params[0].value;
     film[index].sum += vec4(n * v, n * v, n * v, n);
-    film[index].counts.x += window[0].samples.y;
+    film[index].counts.x += window[0].samples;
 }
 """,
     "flat.cpp": """#include "core/integrator.h"

@@ -43,7 +43,7 @@ class LimitedDevice final : public Device {
         if (found == sampling_.end() || count == 0) return;
         kernel::FilmWindow window{};
         buffers[0]->download(&window, sizeof window);
-        if (window.samples.y <= most_) return;
+        if (window.samples <= most_) return;
         ++failures_;
         throw UnfinishedError("error: kernel " + found->second + " could not finish a loop within its bound");
     }

@@ -4,10 +4,10 @@
 
 // Consecutive indices lie close to each other: strips of eight rows, walked column by column, so that rays of one block of
 // work (CPU) or of one subgroup (GPU) take similar ways.
-FN uvec2 film_pixel_of(uint index, uvec4 window) {
-    uint strip = index / (8u * window.z);
-    uint rest = index - strip * 8u * window.z;
-    uint height = min(8u, window.w - strip * 8u);
+FN uvec2 film_pixel_of(uint index, IN(FilmWindow) window) {
+    uint strip = index / (8u * window.width);
+    uint rest = index - strip * 8u * window.width;
+    uint height = min(8u, window.height - strip * 8u);
     uint column = rest / height;
     return uvec2(column, strip * 8u + rest - column * height);
 }
@@ -99,10 +99,10 @@ struct CameraSample {
 CONST uint CAMERA_DIMENSIONS = 4u;
 FN CameraSample camera_sample(IN(FilmWindow) w, uvec2 pixel, uint i) {
     CameraSample s;
-    uint x = w.pixels.x + pixel.x;
-    uint y = w.pixels.y + pixel.y;
-    s.pass = w.samples.x + i;
-    s.numbers = sampler_begin(y * scene[0].camera.film.x + x, s.pass, w.samples.z, w.samples.w);
+    uint x = w.x + pixel.x;
+    uint y = w.y + pixel.y;
+    s.pass = w.first_sample + i;
+    s.numbers = sampler_begin(y * scene[0].camera.film.x + x, s.pass, w.seed, w.sampler_kind);
     vec2 offset = pixel_filter_sample(sample_2d_at(s.numbers, 0u), s.weight);
     vec2 u_lens = vec2(0.5f);
     if (CALLED_FOR(EFFECT_DEPTH_OF_FIELD)) u_lens = sample_2d_at(s.numbers, 2u);

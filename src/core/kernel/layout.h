@@ -1,6 +1,7 @@
 // The scene's records as kernels read them: shared by the host, the C++ kernels and GLSL.
 //
-// Members are vec4 and uvec4 only: GLSL's scalar layout has no tail padding, C++ pads, and a shifted read gives NaN.
+// Members are vec4 and uvec4, or scalars in fours: whatever pads does so differently in GLSL and C++, and a shifted read gives
+// NaN. Records that are read once a dispatch have names for each scalar; those of every hit are read four numbers at a time.
 // Indices that may be absent hold NONE. Directions and positions are world space unless said; colours are linear Rec.709.
 #ifndef LAMPYRIS_KERNEL_LAYOUT
 #define LAMPYRIS_KERNEL_LAYOUT
@@ -266,8 +267,14 @@ struct FilmBias {
 
 // The part of the image that is rendered, in pixels of the full film, and which samples.
 struct FilmWindow {
-    uvec4 pixels;   // x0, y0, width, height
-    uvec4 samples;  // first sample, number of samples, seed, sampler kind
+    uint x;  // of its upper left pixel
+    uint y;
+    uint width;
+    uint height;
+    uint first_sample;
+    uint samples;
+    uint seed;
+    uint sampler_kind;  // SAMPLER_*
 };
 
 #endif

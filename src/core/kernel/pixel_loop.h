@@ -5,18 +5,18 @@ BUFFER_RW(2, FilmPixel, film)
 
 KERNEL(pixel_loop) {
     FilmWindow w = window[0];
-    uvec2 local = film_pixel_of(index, w.pixels);
-    uint at = local.y * w.pixels.z + local.x;
+    uvec2 local = film_pixel_of(index, w);
+    uint at = local.y * w.width + local.x;
     FilmPixel pixel = film[at];
     uint i = 0u;
-    for (; i < w.samples.y; ++i) {
+    for (; i < w.samples; ++i) {
         CameraSample camera = camera_sample(w, local, i);
         FirstHit first = no_first_hit();
         vec3 radiance = radiance_along(camera.ray, camera.numbers, first);
         film_add_first_hit(pixel, first);
         film_add(pixel, film_sensor(radiance), camera.weight, camera.pass);
     }
-    if (i != w.samples.y) REPORT_UNFINISHED();
+    if (i != w.samples) REPORT_UNFINISHED();
     pixel.counts.y += traced_rays[0];
     film[at] = pixel;
 }

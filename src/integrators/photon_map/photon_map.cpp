@@ -154,10 +154,10 @@ class PhotonMapRendering {
 
     void one_pass(uint64_t pass) {
         kernel::SppmPass record{};
-        record.photons.z = uint32_t(pass);
-        record.counts.z = 1;
-        record.scale.x = 1.0f;
-        record.keep.y = 1;
+        record.number = uint32_t(pass);
+        record.points = 1;
+        record.squared_scale = 1.0f;
+        record.branches = 1;
         pass_buffer_->upload(&record, sizeof record);
         set_window(uint32_t(pass));
         run(sppm_files::kEye, *eye_, "eye_pass",
@@ -188,7 +188,7 @@ class PhotonMapRendering {
     }
 
     void set_window(uint32_t sample) {
-        const kernel::FilmWindow window{session_.film.window(), {sample, 1, session_.seed, session_.sampler}};
+        const kernel::FilmWindow window = session_.window(sample, 1);
         window_->upload(&window, sizeof window);
     }
 

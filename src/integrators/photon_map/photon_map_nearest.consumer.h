@@ -48,7 +48,7 @@ FN void gather_end(IN(Gathered) g, uint query) {
     float disk;
     uint count = nearest_end(g.nearest, whole, disk);
     // Below that radius the disk is as good as the place is known.
-    float least = uintBitsToFloat(hits[query].more.y);
+    float least = hit_least_radius(hits[query]);
     disk = max(disk, least * least);
     vec4 sum = vec4(0.0f);
     uint i = 0u;

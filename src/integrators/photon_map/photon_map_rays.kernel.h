@@ -20,25 +20,20 @@ CONST uint GATHER_STREAM = 0x2545f491u;  // keeps the numbers apart from those o
 
 KERNEL(photon_map_rays) {
     FilmWindow w = window[0];
-    SppmHit end;
-    end.origin = uvec4(0u);
-    end.direction = uvec4(0u);
-    end.more = uvec4(0u);
-    end.radiance = vec4(0.0f);
-    end.throughput = vec4(0.0f);
+    SppmHit end = no_hit();
     vec4 query = vec4(0.0f, 0.0f, 0.0f, -1.0f);
     if (places[index].w >= 0.0f) {
         SppmHit hit = hits[index];
         vec3 direction = hit_direction(hit);
         Surface s = hit_surface(hit);
         Vertex v = vertex_at(s, direction);
-        uint x = w.pixels.x + index % w.pixels.z;
-        uint y = w.pixels.y + index / w.pixels.z;
+        uint x = w.x + index % w.width;
+        uint y = w.y + index / w.width;
         // Rays of all passes are one stratified set.
         Sampler numbers =
-            sampler_begin(y * scene[0].camera.film.x + x, w.samples.x, w.samples.z ^ GATHER_STREAM, w.samples.w);
-        EyePath path = eye_path_begin(ray_of(s.position, direction), hit.more.z);
-        path.walk.depth = int(hit.more.w) - 1;
+            sampler_begin(y * scene[0].camera.film.x + x, w.first_sample, w.seed ^ GATHER_STREAM, w.sampler_kind);
+        EyePath path = eye_path_begin(ray_of(s.position, direction), hit_medium(hit));
+        path.walk.depth = int(hit_number(hit)) - 1;
         // A specular lobe here is the eye path's: what comes over it is followed from the camera.
         if (eye_path_scatters(s, v, numbers, EYE_LOBES_OTHER, path.walk)) {
             FirstHit unseen = no_first_hit();

@@ -26,9 +26,13 @@ StoredPhotons::StoredPhotons(RenderSession& session, uint32_t keep, uint32_t pat
     const glm::vec3 extent = bounds.w * 1.001f + 1e-6f * glm::abs(glm::vec3(bounds));
     pass_.low = glm::vec4(glm::vec3(bounds) - extent, 0.0f);
     pass_.high = glm::vec4(glm::vec3(bounds) + extent, 0.0f);
-    pass_.photons = {0, 0, stream, session.seed};
-    pass_.counts = {paths, session.sampler, 1, paths};
-    pass_.keep.x = keep;
+    pass_.number = stream;
+    pass_.seed = session.seed;
+    pass_.paths = paths;
+    pass_.sampler_kind = session.sampler;
+    pass_.points = 1;
+    pass_.part_paths = paths;
+    pass_.keep = keep;
 }
 
 // All photons are kept: where they are more than there is room for, they are traced again into what they need. A path is a function
@@ -40,7 +44,7 @@ void StoredPhotons::trace(const BufferHandle& parameters) {
     for (;;) {
         store_.reset();
         store_ = session_.device.create_buffer(capacity * sizeof(kernel::PhotonRecord), "photons");
-        pass_.photons.y = uint32_t(capacity);
+        pass_.capacity = uint32_t(capacity);
         arguments->upload(&pass_, sizeof pass_);
         counters->fill_zero();
         run_in_phase(session_, sppm_files::kPhotons, *kernel_, "photon_tracing",

@@ -20,14 +20,14 @@ CONST uint DIRECT_STREAM = 0x3c6ef372u;  // keeps the numbers apart from those o
 
 KERNEL(ppm_direct) {
     FilmWindow w = window[0];
-    uint x = w.pixels.x + index % w.pixels.z;
-    uint y = w.pixels.y + index / w.pixels.z;
-    uint pixels = w.pixels.z * w.pixels.w;
-    uint pass = passes[0].photons.z;
-    uint points = passes[0].counts.z;
+    uint x = w.x + index % w.width;
+    uint y = w.y + index / w.width;
+    uint pixels = w.width * w.height;
+    uint pass = passes[0].number;
+    uint points = passes[0].points;
     uint i = 0u;
-    for (; i < w.samples.y; ++i) {
-        uint point = w.samples.x + i;
+    for (; i < w.samples; ++i) {
+        uint point = w.first_sample + i;
         uint at = point * pixels + index;
         if (pass == 0u) ways[at] = hits[at].radiance;
         if (queries[at].w < 0.0f) continue;
@@ -36,16 +36,16 @@ KERNEL(ppm_direct) {
         Surface s = hit_surface(hit);
         Vertex v = vertex_at(s, direction);
         // The points of all passes are one stratified set.
-        Sampler numbers = sampler_begin(y * scene[0].camera.film.x + x, pass * points + point,
-                                        w.samples.z ^ DIRECT_STREAM, w.samples.w);
+        Sampler numbers = sampler_begin(y * scene[0].camera.film.x + x, pass * points + point, w.seed ^ DIRECT_STREAM,
+                                        w.sampler_kind);
         // A light without extent is found in the same direction again.
         v.bsdf.walk = hash_combine(numbers.key, numbers.index);
         uint u_light = 0u;
         if (light_choice_needs_number()) u_light = sample_bits_1d_at(numbers, 0u);
-        vec3 arriving = direct_light(s, v, hit.more.z, u_light, sample_bits_2d_at(numbers, 1u), false);
+        vec3 arriving = direct_light(s, v, hit_medium(hit), u_light, sample_bits_2d_at(numbers, 1u), false);
         vec3 radiance = vec3(ways[at]) + vec3(hit.throughput) * arriving;
         hits[at].radiance = vec4(radiance.x, radiance.y, radiance.z, hit.radiance.w);
     }
-    if (i != w.samples.y) REPORT_UNFINISHED();
+    if (i != w.samples) REPORT_UNFINISHED();
     film[index].counts.y += traced_rays[0];
 }

@@ -4,7 +4,7 @@
 
 #include "core/kernel/film.h"
 #include "core/kernel/visible_point.h"
-#include "integrators/sppm/sppm.layout.h"
+#include "integrators/sppm/hit_record.functions.h"
 #include "integrators/sppm/sppm.params.h"
 
 BUFFER_RO(1, SppmParams, params)

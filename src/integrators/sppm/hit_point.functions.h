@@ -3,7 +3,7 @@
 #define LAMPYRIS_SPPM_HIT_POINT
 
 #include "core/kernel/visible_point.h"
-#include "integrators/sppm/sppm.layout.h"
+#include "integrators/sppm/hit_record.functions.h"
 
 struct HitPoint {
     Vertex vertex;
@@ -21,18 +21,13 @@ FN HitPoint no_hit_point() {
     return p;
 }
 
-FN vec3 hit_direction(IN(SppmHit) h) {
-    return vec3(uintBitsToFloat(h.direction.x), uintBitsToFloat(h.direction.y), uintBitsToFloat(h.direction.z));
-}
-
 FN Surface hit_surface(IN(SppmHit) h) {
     Hit hit;
-    hit.instance = h.origin.w;
-    hit.geometry = h.direction.w;
-    hit.primitive = h.more.x;
-    vec3 origin = vec3(uintBitsToFloat(h.origin.x), uintBitsToFloat(h.origin.y), uintBitsToFloat(h.origin.z));
+    hit.instance = hit_instance(h);
+    hit.geometry = hit_geometry(h);
+    hit.primitive = hit_primitive(h);
     Surface s = no_surface();
-    surface_at(hit, origin, hit_direction(h), s);
+    surface_at(hit, hit_origin(h), hit_direction(h), s);
     return s;
 }
 

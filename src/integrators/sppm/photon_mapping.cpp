@@ -95,12 +95,17 @@ class PhotonMapping {
     }
 
     void one_pass(uint64_t pass) {
-        pass_.photons = {0, capacity_, uint32_t(pass), session_.seed};
-        pass_.counts = {paths_, session_.sampler, points_, 0};
-        pass_.keep.x =
-            params_.direct == kernel::SPPM_DIRECT_PHOTONS ? kernel::SPPM_KEEP_ALL : kernel::SPPM_KEEP_BOUNCED;
-        pass_.keep.y = branches_;
-        pass_.scale.x = float(memoryless_scale(pass, double(params_.alpha)));
+        pass_.first_path = 0;
+        pass_.capacity = capacity_;
+        pass_.number = uint32_t(pass);
+        pass_.seed = session_.seed;
+        pass_.paths = paths_;
+        pass_.sampler_kind = session_.sampler;
+        pass_.points = points_;
+        pass_.part_paths = 0;
+        pass_.keep = params_.direct == kernel::SPPM_DIRECT_PHOTONS ? kernel::SPPM_KEEP_ALL : kernel::SPPM_KEEP_BOUNCED;
+        pass_.branches = branches_;
+        pass_.squared_scale = float(memoryless_scale(pass, double(params_.alpha)));
         const SppmCounters zero{};
         counters_->upload(&zero, sizeof zero);
         pass_buffer_->upload(&pass_, sizeof pass_);
@@ -145,7 +150,7 @@ class PhotonMapping {
     }
 
     void set_window(uint32_t first, uint32_t count) {
-        const kernel::FilmWindow window{session_.film.window(), {first, count, session_.seed, session_.sampler}};
+        const kernel::FilmWindow window = session_.window(first, count);
         window_->upload(&window, sizeof window);
     }
 
@@ -153,9 +158,9 @@ class PhotonMapping {
     void photon_pass() {
         for (uint32_t first = 0; first < paths_;) {
             const uint32_t count = std::min(part_, paths_ - first);
-            pass_.photons.x = first;
-            pass_.photons.y = capacity_;
-            pass_.counts.w = count;
+            pass_.first_path = first;
+            pass_.capacity = capacity_;
+            pass_.part_paths = count;
             pass_buffer_->upload(&pass_, sizeof pass_);
             const uint32_t none[3] = {0, 0, 0};
             counters_->upload(none, sizeof none);
@@ -199,7 +204,7 @@ class PhotonMapping {
         set.low = glm::vec3(pass_.low);
         set.high = glm::vec3(pass_.high);
         set.seed = session_.seed;
-        set.pass = pass_.photons.z * 0x9e3779b9u + pass_.photons.x;  // each part has its own grid
+        set.pass = pass_.number * 0x9e3779b9u + pass_.first_path;  // each part has its own grid
         set.mean_power = std::bit_cast<float>(session_.scene.record.lights.w) / float(paths_);
         map_->build(set);
         map_->gather(consumer_, queries_, 0, points_ * pixels_);

@@ -4,7 +4,7 @@
 
 // Where an eye path stopped: the ray and the primitive that it met, from which the surface is found again, so that a record is
 // short and the gather kernel traces nothing. Its place and radius are in `queries`.
-struct SppmHit {
+struct SppmHit {      // hit_record.functions.h names what is packed
     uvec4 origin;     // of the last ray (floats' bits); w: instance
     uvec4 direction;  // floats' bits; w: geometry
     vec4 throughput;  // rgb; w: weight of the pixel filter
@@ -13,14 +13,20 @@ struct SppmHit {
 };
 
 struct SppmPass {
-    uvec4 photons;  // first path of this part, photons that fit, pass, seed
-    // Paths emitted in the pass, sampler kind, hit points a pixel, paths in a build of the map (keys). Where there is one eye sample a
-    // pixel, FilmWindow counts passes; where there are more, these.
-    uvec4 counts;
-    vec4 low;  // photons are kept within this box
+    uint first_path;  // of this part
+    uint capacity;    // photons that fit
+    uint number;      // of the pass
+    uint seed;
+    uint paths;         // emitted in the pass
+    uint sampler_kind;  // SAMPLER_*
+    uint points;        // hit points a pixel; FilmWindow counts passes where there is one, these where there are more
+    uint part_paths;    // in a build of the map (keys)
+    vec4 low;           // photons are kept within this box
     vec4 high;
-    vec4 scale;  // x: squared radius over that of the first pass, where passes have the same one (memoryless)
-    uvec4 keep;  // x: which photons are kept: SPPM_KEEP_*; y: branches, hit points of one eye path
+    float squared_scale;  // squared radius over that of the first pass, where passes have the same one (memoryless)
+    uint keep;            // which photons: SPPM_KEEP_*
+    uint branches;        // hit points of one eye path
+    uint unused;
 };
 
 // Words of `counters`.

@@ -14,21 +14,17 @@ BUFFER_RO(5, SppmPass, passes)
 
 KERNEL(sppm_eye) {
     FilmWindow w = window[0];
-    uvec2 local = film_pixel_of(index, w.pixels);
-    uint place = local.y * w.pixels.z + local.x;
+    uvec2 local = film_pixel_of(index, w);
+    uint place = local.y * w.width + local.x;
     FilmPixel pixel = film[place];
-    uint pixels = w.pixels.z * w.pixels.w;
-    uint branches = passes[0].keep.y;
-    uint count = w.samples.y * branches;
+    uint pixels = w.width * w.height;
+    uint branches = passes[0].branches;
+    uint count = w.samples * branches;
     uint i = 0u;
     for (; i < count; ++i) {
-        uint at = ((w.samples.x * branches + i) % passes[0].counts.z) * pixels + place;
+        uint at = ((w.first_sample * branches + i) % passes[0].points) * pixels + place;
         CameraSample camera = camera_sample(w, local, i / branches);
-        SppmHit hit;
-        hit.origin = uvec4(0u);
-        hit.direction = uvec4(0u);
-        hit.more = uvec4(0u);
-        hit.radiance = vec4(0.0f);
+        SppmHit hit = no_hit();
         vec4 query;
         EyePath path = eye_path_begin(camera.ray, camera_medium());
         FirstHit first = no_first_hit();

@@ -29,14 +29,14 @@ FN bool in_box(vec3 p, vec4 low, vec4 high) {
 
 FN void keep_photon(vec3 position, vec3 direction, vec3 power, uint key) {
     uint at = ATOMIC_ADD_U32(counters[SPPM_STORED], 1u);
-    if (at < passes[0].photons.y) photons[at] = photon_pack(position, direction, power, key);
+    if (at < passes[0].capacity) photons[at] = photon_pack(position, direction, power, key);
 }
 
 KERNEL(sppm_photons) {
     SppmPass pass = passes[0];
-    uint path = pass.photons.x + index;
+    uint path = pass.first_path + index;
     // Paths of one pass are a stratified set: the path is the sample, the pass takes the pixel's place.
-    Sampler numbers = sampler_begin(pass.photons.z, path, pass.photons.w ^ PHOTON_STREAM, pass.counts.y);
+    Sampler numbers = sampler_begin(pass.number, path, pass.seed ^ PHOTON_STREAM, pass.sampler_kind);
     uint u_choice = 0u;
     if (scene[0].lights.x > 1u) u_choice = sample_bits_1d_at(numbers, 0u);
     uvec2 u_direction = sample_bits_2d_at(numbers, 4u);
@@ -44,22 +44,22 @@ KERNEL(sppm_photons) {
     if (!emit_photon(u_choice, sample_1d_at(numbers, 1u), sample_2d_at(numbers, 2u), u_direction, start)) return;
     Walk walk =
         walk_begin(ray_of(start.origin, start.direction), start.medium, TRANSPORT_IMPORTANCE, params[0].maxdepth);
-    walk.throughput = start.power / float(pass.counts.x);
+    walk.throughput = start.power / float(pass.paths);
     uint kept = 0u;
     Surface s;
     uint fate;
     while (walk_next_or_mask(walk, s, fate)) {
         if (HAS(EFFECT_MEDIUM) && is_black(walk.throughput)) break;
         if (fate != SURFACE_ABSENT && material_may_gather(s.material, params[0].glossy) &&
-            (walk.depth > 0 || pass.keep.x == SPPM_KEEP_ALL) && in_box(s.position, pass.low, pass.high)) {
-            keep_photon(s.position, walk.ray.direction, walk.throughput, photon_key(index, kept, pass.counts.w));
+            (walk.depth > 0 || pass.keep == SPPM_KEEP_ALL) && in_box(s.position, pass.low, pass.high)) {
+            keep_photon(s.position, walk.ray.direction, walk.throughput, photon_key(index, kept, pass.part_paths));
             kept += 1u;
         }
         if (walk_crosses_or_passes(walk, s, fate)) continue;
         Vertex v = walk_vertex(walk, s);
         uint action = visible_action(v.bsdf, params[0].glossy);
         // What is reflected here is no caustic, but for the smooth coat over it: that is known once a lobe is chosen.
-        bool ends = pass.keep.x == SPPM_KEEP_CAUSTIC && action == VISIBLE_GATHER;
+        bool ends = pass.keep == SPPM_KEEP_CAUSTIC && action == VISIBLE_GATHER;
         if (walk.depth >= walk.maxdepth || ends) break;
 
         // v.wo is where the light comes from: importance flows as a camera's path does.
@@ -69,7 +69,7 @@ KERNEL(sppm_photons) {
         if (bsdf_chooses_lobe(v.bsdf)) u_lobe = sample_1d_at(numbers, dimension + PHOTON_LOBE);
         vec2 u_direction = sample_2d_at(numbers, dimension + PHOTON_DIRECTION);
         if (!bsdf_sample(v.bsdf, v.wo, u_lobe, u_direction, TRANSPORT_IMPORTANCE, next)) break;
-        if (pass.keep.x == SPPM_KEEP_CAUSTIC && action == VISIBLE_SPLIT && (next.lobe & LOBE_SPECULAR) == 0u) break;
+        if (pass.keep == SPPM_KEEP_CAUSTIC && action == VISIBLE_SPLIT && (next.lobe & LOBE_SPECULAR) == 0u) break;
         if (!walk_leave(walk, s, v, next, 0, numbers, dimension + PHOTON_ROULETTE)) break;
     }
     if (HAS(EFFECT_ALPHA) && kept > counters[SPPM_MOST_KEPT]) ATOMIC_MAX_U32(counters[SPPM_MOST_KEPT], kept);

@@ -2,7 +2,7 @@
 #include "core/kernel/prelude.h"
 #include "core/kernel/layout.h"
 #include "core/kernel/math.h"
-#include "integrators/sppm/sppm.layout.h"
+#include "integrators/sppm/hit_record.functions.h"
 #include "integrators/sppm/sppm.params.h"
 
 BUFFER_RO(0, SppmParams, params)
@@ -30,8 +30,8 @@ KERNEL(sppm_radius) {
     biases[index] = vec4(0.0f);
     vec4 q = queries[index];
     if (q.w < 0.0f) return;
-    float scale = params[0].schedule == SPPM_MEMORYLESS ? passes[0].scale.x : statistics[index].x;
-    q.w = max(hits[index].radiance.w * sqrt(scale), uintBitsToFloat(hits[index].more.y));
+    float scale = params[0].schedule == SPPM_MEMORYLESS ? passes[0].squared_scale : statistics[index].x;
+    q.w = max(hit_first_radius(hits[index]) * sqrt(scale), hit_least_radius(hits[index]));
     queries[index] = q;
     float reach = q.w * 1.00001f;
     raise(SPPM_LOW, ~ordered_bits(q.x - reach));

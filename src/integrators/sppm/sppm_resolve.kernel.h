@@ -3,7 +3,7 @@
 
 #include "core/kernel/film.h"
 #include "core/kernel/photon.h"
-#include "integrators/sppm/sppm.layout.h"
+#include "integrators/sppm/hit_record.functions.h"
 #include "integrators/sppm/sppm.params.h"
 
 BUFFER_RO(0, FilmWindow, window)
@@ -26,15 +26,15 @@ FN vec2 shrink(vec2 statistic, float found) {
 
 KERNEL(sppm_resolve) {
     FilmWindow w = window[0];
-    uint pixels = w.pixels.z * w.pixels.w;
+    uint pixels = w.width * w.height;
     FilmPixel pixel = film[index];
     uint i = 0u;
-    uint branches = passes[0].keep.y;
-    uint count = w.samples.y * branches;
+    uint branches = passes[0].branches;
+    uint count = w.samples * branches;
     vec3 radiance = vec3(0.0f);
     vec3 bias = vec3(0.0f);
     for (; i < count; ++i) {
-        uint at = ((w.samples.x * branches + i) % passes[0].counts.z) * pixels + index;
+        uint at = ((w.first_sample * branches + i) % passes[0].points) * pixels + index;
         SppmHit hit = hits[at];
         radiance += vec3(hit.radiance);
         vec4 q = queries[at];
@@ -48,8 +48,8 @@ KERNEL(sppm_resolve) {
             statistics[at] = shrink(statistics[at], sum.w);
         }
         if ((i + 1u) % branches != 0u) continue;  // the branches of a path are one sample
-        if (film_add(pixel, film_sensor(radiance), hit.throughput.w, passes[0].photons.z))
-            film_add_bias(film_bias[index], bias * scene[0].camera.lens.w, hit.throughput.w);
+        if (film_add(pixel, film_sensor(radiance), hit_filter_weight(hit), passes[0].number))
+            film_add_bias(film_bias[index], bias * scene[0].camera.lens.w, hit_filter_weight(hit));
         radiance = vec3(0.0f);
         bias = vec3(0.0f);
     }
