@@ -59,7 +59,7 @@ Counts count(const Scene& scene) {
     return counts;
 }
 
-const EffectRequest* request_of(const Effects& effects, uint32_t effect) {
+const EffectRequest* request_of(const Effects& effects, uint64_t effect) {
     for (const EffectRequest& request : effects.requests())
         if (request.effect == effect) return &request;
     return nullptr;
@@ -83,7 +83,7 @@ void print_table(const LoadedScene& loaded) {
                counted(scene.geometries.size(), "geometry", "geometries"),
                counted(scene.instances.size() - 1, "instance"));
     if (scene.instances.size() > 1) fmt::print(" ({} in all)", counted(counts.triangles_with_instances, "triangle"));
-    fmt::print("\nlights       {}, of which {} infinite\n", scene.lights.size(), scene.record.lights.y);
+    fmt::print("\nlights       {}, of which {} infinite\n", scene.lights.size(), scene.record.infinite_lights);
     fmt::print("materials    {}; {}, {}\n", scene.materials.size(),
                counted(scene.texture_ops.size(), "texture operation"), counted(scene.images.size(), "image"));
     fmt::print("memory       {:.1f} MB before acceleration structures\n\n", double(counts.memory) * 1e-6);
@@ -127,7 +127,7 @@ void print_json(const LoadedScene& loaded) {
     json["geometries"] = scene.geometries.size();
     json["instances"] = scene.instances.size() - 1;
     json["lights"] = scene.lights.size();
-    json["infinite_lights"] = scene.record.lights.y;
+    json["infinite_lights"] = scene.record.infinite_lights;
     json["materials"] = scene.materials.size();
     json["texture_operations"] = scene.texture_ops.size();
     json["images"] = scene.images.size();

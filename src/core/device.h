@@ -85,7 +85,7 @@ class Device {
     // `file` is the kernel's path below its source root ("integrators/path/path.radiance.h"), or several joined by '+', which
     // make one kernel in that order ("accel/common/collect.consumer.h+accel/linked_list/linked_list.gather.h"); code for effects
     // outside `effects` may be left out. `trace` says whether the kernel traces rays or reads the scene (needs a DeviceScene to run).
-    virtual KernelHandle compile(std::string_view file, uint32_t effects) = 0;
+    virtual KernelHandle compile(std::string_view file, uint64_t effects) = 0;
 
     // Runs the kernel for the indices [begin, begin + count), split as the device needs; `buffers[i]` is binding i of set 1.
     // Returns when it is done. `scene` may be null for kernels that use no scene buffer. With a count of 0 it gets the kernel ready for

@@ -11,7 +11,7 @@
 namespace lampyris {
 
 struct EffectRequest {
-    uint32_t effect = 0;   // one bit (kernel::EFFECT_*)
+    uint64_t effect = 0;   // one bit (kernel::EFFECT_*)
     std::string asked_by;  // "scene.pbrt:12:1 (Material \"dielectric\")"; the first directive that asks
 };
 
@@ -21,7 +21,7 @@ class Effects {
     // The first one to ask is remembered. Where who asks is a function, it is called for the first alone: to find a place in
     // a file takes time.
     template <typename AskedBy>
-    void ask(uint32_t effect, const AskedBy& asked_by) {
+    void ask(uint64_t effect, const AskedBy& asked_by) {
         if (mask_ & effect) return;
         mask_ |= effect;
         if constexpr (std::invocable<const AskedBy&>)
@@ -29,17 +29,17 @@ class Effects {
         else
             requests_.push_back({effect, asked_by});
     }
-    uint32_t mask() const { return mask_; }
-    bool has(uint32_t effect) const { return (mask_ & effect) != 0; }
+    uint64_t mask() const { return mask_; }
+    bool has(uint64_t effect) const { return (mask_ & effect) != 0; }
     const std::vector<EffectRequest>& requests() const { return requests_; }
 
  private:
-    uint32_t mask_ = 0;
+    uint64_t mask_ = 0;
     std::vector<EffectRequest> requests_;
 };
 
 struct EffectInfo {
-    uint32_t effect;
+    uint64_t effect;
     const char* name;
     const char* cost;
 };

@@ -23,7 +23,7 @@ class Integrator {
     virtual bool uses_photon_map() const { return false; }
     // Whether passes share one set of eye samples (--spp), and --passes alone counts passes.
     virtual bool fixes_eye_samples() const { return false; }
-    // What of the error no variance between passes shows, in a few words: what all passes share. Empty where that is nothing.
+    // Error that the variance between passes cannot reveal, in a few words: what all passes share. Empty where there is none.
     virtual std::string unseen_error([[maybe_unused]] uint32_t eye_samples) const { return {}; }
 };
 

@@ -14,7 +14,7 @@ namespace {
 
 struct Build {
     CpuTracerKind tracer;
-    uint32_t effects;
+    uint64_t effects;
     CpuKernelFunction run;
 };
 
@@ -30,7 +30,7 @@ std::map<std::string, std::string_view, std::less<>>& texts() {
 
 }  // namespace
 
-CpuKernelVariant::CpuKernelVariant(const char* file, CpuTracerKind tracer, uint32_t effects, CpuKernelFunction run) {
+CpuKernelVariant::CpuKernelVariant(const char* file, CpuTracerKind tracer, uint64_t effects, CpuKernelFunction run) {
     builds().insert({file, Build{tracer, effects, run}});
 }
 
@@ -56,7 +56,7 @@ std::vector<std::string_view> kernel_parts(std::string_view file) {
     return parts;
 }
 
-CpuKernelFunction find_cpu_kernel(std::string_view file, CpuTracerKind tracer, uint32_t effects) {
+CpuKernelFunction find_cpu_kernel(std::string_view file, CpuTracerKind tracer, uint64_t effects) {
     const Build* best = nullptr;
     const auto [begin, end] = builds().equal_range(file);
     for (auto it = begin; it != end; ++it) {

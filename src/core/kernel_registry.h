@@ -35,7 +35,7 @@ using CpuKernelFunction = void (*)(const CpuInvocation&);
 
 // A C++ build of a kernel for a set of effects; registers itself.
 struct CpuKernelVariant {
-    CpuKernelVariant(const char* file, CpuTracerKind tracer, uint32_t effects, CpuKernelFunction run);
+    CpuKernelVariant(const char* file, CpuTracerKind tracer, uint64_t effects, CpuKernelFunction run);
 };
 
 // A kernel file's or header's text; registers itself.
@@ -54,6 +54,6 @@ inline constexpr std::string_view kPixelLoop = "core/kernel/pixel_loop.h";
 
 // The C++ build with the fewest effects that has all of `effects`. Throws std::logic_error for an unknown kernel,
 // InputError for a pair of files of two plugins, which no build has put together.
-CpuKernelFunction find_cpu_kernel(std::string_view file, CpuTracerKind tracer, uint32_t effects);
+CpuKernelFunction find_cpu_kernel(std::string_view file, CpuTracerKind tracer, uint64_t effects);
 
 }  // namespace lampyris

@@ -9,6 +9,8 @@
 
 namespace lampyris::kernel {
 using uint = uint32_t;
+using EffectSet = uint64_t;  // one bit an effect
+#define EFFECT_BIT(bit) (::lampyris::kernel::EffectSet(1) << (bit))
 using glm::uvec4;
 using glm::vec2;
 using glm::vec3;

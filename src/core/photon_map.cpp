@@ -180,7 +180,7 @@ BufferHandle PhotonMap::radix_sort(const BufferHandle& pairs, const BufferHandle
     return from;
 }
 
-const Kernel& PhotonMap::compiled(const std::string& file, uint32_t effects) {
+const Kernel& PhotonMap::compiled(const std::string& file, uint64_t effects) {
     KernelHandle& kernel = kernels_[{file, effects}];
     if (!kernel) kernel = device().compile(file, effects);
     return *kernel;

@@ -50,7 +50,7 @@ struct PhotonSet {
 // Whom the photons that queries find are handed to.
 struct PhotonConsumer {
     std::string file;                    // "accel/common/collect.consumer.h"; see core/kernel/gather.h
-    uint32_t effects = 0;                // of the scene
+    uint64_t effects = 0;                // of the scene
     const DeviceScene* scene = nullptr;  // where the consumer reads it
     std::vector<BufferHandle> buffers;   // binding 16 and up
 };
@@ -151,7 +151,7 @@ class PhotonMap {
  private:
     void scan_level(const BufferHandle& values, uint32_t count, int level);
     std::vector<const Kernel*> gather_kernels(const PhotonConsumer& consumer);
-    const Kernel& compiled(const std::string& file, uint32_t effects);
+    const Kernel& compiled(const std::string& file, uint64_t effects);
     double kernel_seconds() const;
     Device* device_ = nullptr;
     std::map<std::pair<std::string, uint32_t>, KernelHandle> kernels_;

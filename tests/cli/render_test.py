@@ -278,7 +278,7 @@ def test_quiet_prints_nothing(program, scene, tmp_path):
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
     done = run(program, tmp_path / "missing.pbrt", "-o", tmp_path / "o.exr", "--quiet")
     assert done.returncode == 1
-    assert "missing.pbrt" in done.stderr  # errors are told all the same
+    assert "missing.pbrt" in done.stderr  # errors are still reported
 
 
 def test_results_and_progress_go_to_different_streams(program, scene, tmp_path):

@@ -71,8 +71,8 @@ void check(const Scene& scene) {
     for (const kernel::MaterialRecord& material : scene.materials) check_material(scene, material);
     for (const kernel::LightRecord& light : scene.lights) check_light(scene, light);
     check_textures(scene);
-    assert(scene.record.lights.x == scene.lights.size() && scene.record.lights.y <= scene.lights.size());
-    assert(scene.lights.empty() || within(scene.record.lights.z, scene.lights.size() + 1, scene.distributions.size()));
+    assert(scene.record.light_count == scene.lights.size() && scene.record.infinite_lights <= scene.lights.size());
+    assert(scene.lights.empty() || within(scene.record.light_cdf, scene.lights.size() + 1, scene.distributions.size()));
     for (const GeometrySet& set : scene.sets)
         assert(within(set.first_geometry, set.geometry_count, scene.geometries.size()));
     assert(!scene.instances.empty() && scene.instances.size() == scene.instance_sets.size());

@@ -160,7 +160,7 @@ class ShaderCacheTest : public testing::Test {
     }
     void TearDown() override { std::filesystem::remove_all(folder_); }
     // Compiles and runs on a new device; the value of results[3].
-    float run(uint32_t effects = 0) {
+    float run(uint64_t effects = 0) {
         const auto device = create_device("vulkan", with({{"cache", folder_.string()}}));
         const auto kernel = device->compile("kernel/device_effects.kernel.h", effects);
         spirv_bytes_ = device->statistics().spirv_bytes.at("kernel/device_effects.kernel.h");

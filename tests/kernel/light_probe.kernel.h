@@ -70,7 +70,7 @@ KERNEL(light_probe) {
     float first = 0.0f;
     float distance = 0.0f;
     float hits = 0.0f;
-    if (look && light < scene[0].lights.y) {
+    if (look && light < scene[0].infinite_lights) {
         radiance = environment_radiance(d);
         pdf = environment_pdf(d);
         first = pdf;

@@ -24,7 +24,7 @@ kernel::LightRecord record(uint32_t kind, uint32_t image = kernel::NONE, uint32_
 
 // The one sample that a light at a point gives.
 LightAnswer only_sample(Device& device, TestScene& scene, vec3 ref_p) {
-    constexpr uint32_t kEffects =
+    constexpr uint64_t kEffects =
         kernel::EFFECT_POINT_LIGHTS | kernel::EFFECT_DISTANT_LIGHTS | kernel::EFFECT_PROJECTION_LIGHTS;
     LightAsker asker(device, light_probe(device, kEffects), scene.finish());
     return asker.sample(ref_p, 1)[0];
@@ -150,7 +150,7 @@ TEST(Lights, ManyLightsAddUp) {
         TestScene scene;
         auto environment = record(kernel::LIGHT_INFINITE);
         scene.add_light(environment, vec3(0.25f), 5);
-        scene.scene.record.lights.y = 1;
+        scene.scene.record.infinite_lights = 1;
         scene.add_area_light(scene.add_quadric(kernel::GEOMETRY_DISK, {2, 1, 0, float(2 * kPi)}), vec3(3),
                              kernel::LIGHT_TWO_SIDED);
         auto point = record(kernel::LIGHT_POINT);

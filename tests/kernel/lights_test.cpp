@@ -26,9 +26,9 @@ constexpr double kAlpha = 1e-5;
 constexpr int kTests = 64;  // at least as many chi-squared and z tests as there are here
 constexpr uint32_t kTwoSided = kernel::LIGHT_TWO_SIDED;
 // What the probe is compiled for: shaders for everything take long to compile.
-constexpr uint32_t kAreaEffects =
+constexpr uint64_t kAreaEffects =
     kernel::EFFECT_QUADRICS | kernel::EFFECT_BILINEAR | kernel::EFFECT_AREA_LIGHTS | kernel::EFFECT_QUADRIC_LIGHTS;
-constexpr uint32_t kInfiniteEffects = kernel::EFFECT_ENVIRONMENT | kernel::EFFECT_ENVIRONMENT_IMAGE;
+constexpr uint64_t kInfiniteEffects = kernel::EFFECT_ENVIRONMENT | kernel::EFFECT_ENVIRONMENT_IMAGE;
 
 struct Case {
     const char* name;
@@ -228,7 +228,7 @@ TEST(Lights, InfiniteLightsAreSampledWithTheirDensity) {
                              0};
                 scene.add_light(light, vec3(0.5f), 2.0f);
             }
-            scene.scene.record.lights.y = uint32_t(scene.scene.lights.size());
+            scene.scene.record.infinite_lights = uint32_t(scene.scene.lights.size());
             LightAsker asker(*device, probe, scene.finish());
             const Fit result = fit(asker, vec3(0));
             EXPECT_GT(result.p, kAlpha / kTests);

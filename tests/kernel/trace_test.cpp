@@ -80,8 +80,9 @@ struct TraceScene {
     }
     Scene& finish() {
         scene.instances[0].data = {0, scene.sets[0].geometry_count, 0, 0};
-        scene.record.counts = {uint32_t(scene.geometries.size()), uint32_t(scene.instances.size()), 0,
-                               kernel::kAllEffects};
+        scene.record.geometry_count = uint32_t(scene.geometries.size());
+        scene.record.instance_count = uint32_t(scene.instances.size());
+        scene.record_effects(kernel::kAllEffects);
         scene.positions.reserve(scene.positions.size() + 8);
         scene.positions.resize(scene.positions.size() + 4);  // Embree reads past the last vertex
         return scene;

@@ -281,7 +281,7 @@ FilmSummary render(const Case& c, const std::string& backend, std::vector<float>
     // On Vulkan one variant of the kernel for all: compiling one for each would take minutes.
     if (backend == "vulkan") {
         built.scene.effects.ask(kernel::kAllEffects, "the test");
-        built.scene.record.counts.w = built.scene.effects.mask();
+        built.scene.record_effects(built.scene.effects.mask());
     }
     const IntegratorFactory& factory = integrators().require("path");
     const std::unique_ptr<Integrator> integrator = factory.create();

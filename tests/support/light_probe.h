@@ -27,7 +27,7 @@ struct DirectionAnswer {
 };
 
 // The probe, for the effects given: compiled once, used with many scenes.
-inline KernelHandle light_probe(Device& device, uint32_t effects) {
+inline KernelHandle light_probe(Device& device, uint64_t effects) {
     return device.compile("kernel/light_probe.kernel.h", effects);
 }
 

@@ -30,7 +30,7 @@ class LimitedDevice final : public Device {
         return inner_->create_buffer(bytes, name);
     }
     DeviceSceneHandle upload(const Scene& scene) override { return inner_->upload(scene); }
-    KernelHandle compile(std::string_view file, uint32_t effects) override {
+    KernelHandle compile(std::string_view file, uint64_t effects) override {
         KernelHandle kernel = inner_->compile(file, effects);
         for (const char* sampling : {"ao/ao.radiance.h", "path/path.radiance.h", "sppm/sppm_eye.kernel.h"})
             if (file.ends_with(sampling)) sampling_[kernel.get()] = std::string(file);

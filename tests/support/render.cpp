@@ -26,7 +26,7 @@ std::vector<Rendered> render_description(SceneDescription description, const Ren
     BuiltScene built = build_scene(std::move(description), options, diagnostics);
     if (settings.one_variant && settings.backend == "vulkan") {
         built.scene.effects.ask(kernel::kAllEffects, "the test");
-        built.scene.record.counts.w = built.scene.effects.mask();
+        built.scene.record_effects(built.scene.effects.mask());
     }
     PluginChoice choice;
     if (!settings.integrator.empty()) choice = parse_plugin_choice(settings.integrator);

@@ -104,7 +104,9 @@ class TestScene {
     const Scene& finish() {
         choose_lights(scene, powers);
         scene.sets.assign(1, {0, uint32_t(scene.geometries.size())});
-        scene.record.counts = {uint32_t(scene.geometries.size()), 1, 0, kernel::kAllEffects};
+        scene.record.geometry_count = uint32_t(scene.geometries.size());
+        scene.record.instance_count = 1;
+        scene.record_effects(kernel::kAllEffects);
         scene.record.bounds = glm::vec4(0.0f, 0.0f, 0.0f, 100.0f);
         scene.positions.resize(scene.positions.size() + 4);
         const auto at_least_one = [](auto& array) {

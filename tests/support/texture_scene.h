@@ -36,7 +36,9 @@ struct TextureScene {
         scene.texels.assign(std::begin(kNoisePermutation), std::end(kNoisePermutation));  // noise finds its table at 0
         scene.images.resize(1);
         scene.lights.resize(1);
-        scene.record.counts = {1, 1, 0, kernel::kAllEffects};
+        scene.record.geometry_count = 1;
+        scene.record.instance_count = 1;
+        scene.record_effects(kernel::kAllEffects);
     }
 
     // Only the first geometry is traced; the others are there to be asked for their opacity.

@@ -89,7 +89,7 @@ TEST(BuildScene, InfiniteLightsComeFirst) {
     ASSERT_EQ(text.all_errors(), "");
     const Scene& scene = text.scene();
     ASSERT_EQ(scene.lights.size(), 3u);
-    EXPECT_EQ(scene.record.lights.y, 1u);
+    EXPECT_EQ(scene.record.infinite_lights, 1u);
     EXPECT_EQ(scene.lights[0].data.x, LIGHT_INFINITE);
     EXPECT_EQ(scene.lights[scene.geometries[0].ids.y].data.x, LIGHT_TRIANGLE);
     float sum = 0.0f;
@@ -254,7 +254,7 @@ Shape "sphere"
     EXPECT_EQ(scene.media[MEDIUM_VACUUM].sigma_a, vec4(0.0f));
     EXPECT_EQ(scene.media[1].sigma_a, vec4(2.0f, 4.0f, 6.0f, 0.0f));
     EXPECT_EQ(scene.media[2].sigma_a, vec4(1.0f, 1.0f, 1.0f, 0.0f));
-    EXPECT_EQ(scene.record.media.x, 1u);
+    EXPECT_EQ(scene.record.camera_medium, 1u);
     EXPECT_EQ(scene.geometries[0].attributes.w, MEDIUM_VACUUM << 16 | 1u);
     EXPECT_EQ(scene.geometries[1].attributes.w, 2u << 16 | 2u);
     EXPECT_EQ(scene.geometries[2].attributes.w, MEDIUM_VACUUM);

@@ -105,7 +105,7 @@ TEST(LightDistribution, LightsAreChosenByPowerWithAShareForAll) {
     Scene scene;
     scene.lights.resize(3);
     choose_lights(scene, std::vector<double>{9, 0, 1});
-    EXPECT_EQ(scene.record.lights.x, 3u);
+    EXPECT_EQ(scene.record.light_count, 3u);
     EXPECT_FLOAT_EQ(scene.lights[0].emission.w, (1 - kEvenLightShare) * 0.9 + kEvenLightShare / 2);
     EXPECT_EQ(scene.lights[1].emission.w, 0);
     EXPECT_FLOAT_EQ(scene.lights[2].emission.w, (1 - kEvenLightShare) * 0.1 + kEvenLightShare / 2);
@@ -122,13 +122,13 @@ TEST(LightDistribution, LightsOfAnyPowerHaveTheirShare) {
     EXPECT_FLOAT_EQ(scene.lights[1].emission.w, (1 - kEvenLightShare) * 0.25 + even);
     EXPECT_FLOAT_EQ(scene.lights[2].emission.w, even);
     EXPECT_EQ(scene.lights[3].emission.w, 0);
-    EXPECT_EQ(std::bit_cast<float>(scene.record.lights.w), std::numeric_limits<float>::max());
+    EXPECT_EQ(scene.record.light_power, std::numeric_limits<float>::max());
 }
 
 TEST(LightDistribution, NoLightsNeedNoTable) {
     Scene scene;
     choose_lights(scene, std::vector<double>{});
-    EXPECT_EQ(scene.record.lights.x, 0u);
+    EXPECT_EQ(scene.record.light_count, 0u);
     EXPECT_TRUE(scene.distributions.empty());
 }
 

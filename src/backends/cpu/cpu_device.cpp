@@ -130,7 +130,7 @@ class CpuDevice final : public Device {
         return result;
     }
 
-    KernelHandle compile(std::string_view file, uint32_t effects) override {
+    KernelHandle compile(std::string_view file, uint64_t effects) override {
         return std::make_shared<CpuKernel>(file, find_cpu_kernel(file, tracer_, effects));
     }
 

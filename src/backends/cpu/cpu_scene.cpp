@@ -42,7 +42,7 @@ CpuScene::CpuScene(const Scene& scene, CpuTracerKind tracer) {
     buffers_[18] = data_of(scene.media);
     if (tracer == CpuTracerKind::bvh2) {
         bvh_ = std::make_unique<OwnBvh>(OwnBvh{build_bvh2(scene), scene.record, scene.instances});
-        bvh_->record.counts.z = bvh_->bvh.roots[0];
+        bvh_->record.root_node = bvh_->bvh.roots[0];
         for (size_t i = 0; i < bvh_->instances.size(); ++i) bvh_->instances[i].data.z = bvh_->bvh.roots[i];
         buffers_[0] = &bvh_->record;
         buffers_[7] = bvh_->instances.data();

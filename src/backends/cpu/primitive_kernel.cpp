@@ -10,7 +10,7 @@ namespace lampyris {
 namespace kernel {
 namespace {
 
-template <uint kEffects>
+template <EffectSet kEffects>
 struct PrimitiveKernel {
     void* const* scene_buffers_;
     void* const* kernel_buffers_;

@@ -101,7 +101,7 @@ class VulkanDevice final : public Device {
         return result;
     }
 
-    KernelHandle compile(std::string_view file, uint32_t effects) override {
+    KernelHandle compile(std::string_view file, uint64_t effects) override {
         const auto start = Clock::now();
         const CompileNotice notice(file);
         ShaderOptions options = shader_options_;

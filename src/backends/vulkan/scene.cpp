@@ -25,7 +25,7 @@ VulkanScene::VulkanScene(std::shared_ptr<Context> context, std::shared_ptr<Memor
     std::vector<kernel::InstanceRecord> instances = scene.instances;
     if (!ray_query) {
         bvh = build_bvh2(scene);
-        record.counts.z = bvh.roots[0];
+        record.root_node = bvh.roots[0];
         for (size_t i = 0; i < instances.size(); ++i) instances[i].data.z = bvh.roots[i];
     }
     add(0, &record, sizeof record, "record");

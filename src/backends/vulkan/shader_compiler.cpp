@@ -184,14 +184,17 @@ std::string shader_source(std::string_view kernel_file, const ShaderOptions& opt
         "{}{}{}{}"
         "#define KERNEL_TRACER_{} 1\n"
         "#define KERNEL_LOCAL_SIZE {}\n"
-        "const uint kEffects = {:#x}u;\n"
+        "#define EffectSet uvec2\n"
+        "#define EFFECT_BIT(bit) uvec2((bit) < 32 ? 1u << ((bit) & 31) : 0u, (bit) < 32 ? 0u : 1u << ((bit) & 31))\n"
+        "const EffectSet kEffects = EffectSet({:#x}u, {:#x}u);\n"
         "{}{}"
         "#include \"core/kernel/entry.glsl\"\n",
         int64 || options.wide_reads ? "#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require\n" : "",
         int64 ? "#extension GL_EXT_shader_atomic_int64 : require\n" : "",
         ray_query ? "#extension GL_EXT_ray_query : require\n" : "",
         options.wide_reads ? "#define KERNEL_WIDE_READS 1\n" : "", options.ray_query ? "ray_query" : "bvh2",
-        options.local_size, options.effects, options.exact ? "#include \"core/kernel/exact.glsl\"\n" : "", includes);
+        options.local_size, uint32_t(options.effects), uint32_t(options.effects >> 32),
+        options.exact ? "#include \"core/kernel/exact.glsl\"\n" : "", includes);
 }
 
 CompiledShader compile_shader(std::string_view kernel_file, const ShaderOptions& options, const ShaderCache& cache) {

@@ -11,7 +11,7 @@
 namespace lampyris::vulkan {
 
 struct ShaderOptions {
-    uint32_t effects = 0;          // the exact mask: code for other effects is compiled out
+    uint64_t effects = 0;          // the exact mask: code for other effects is compiled out
     bool precise = true;           // forbid contraction
     bool exact = false;            // quotients and square roots by core/kernel/exact.glsl
     bool flush_denormals = false;  // as the CPU does; only with `exact`

@@ -14,7 +14,7 @@ struct Bvh2 {
     std::vector<kernel::BvhNode> nodes;
     std::vector<kernel::vec4>
         triangles;  // three per primitive, in the order of the leaves; see BVH_TRIANGLE in layout.h
-    // What belongs into the scene's records: InstanceRecord::data.z of each instance, SceneRecord::counts.z is the first.
+    // What belongs into the scene's records: InstanceRecord::data.z of each instance, SceneRecord::root_node is the first.
     std::vector<uint32_t> roots;
     size_t bytes() const { return nodes.size() * sizeof(kernel::BvhNode) + triangles.size() * sizeof(kernel::vec4); }
 };

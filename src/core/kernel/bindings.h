@@ -5,7 +5,9 @@
 SCENE_RO(0, SceneRecord, scene)
 // HAS says what this build of a kernel can do, CALLED_FOR what the scene asks of it: for decisions that change how much work is
 // done at every hit. On Vulkan both are the same; on the CPU a build may know more effects than its scene has.
-#define CALLED_FOR(effect) (HAS(effect) && (scene[0].counts.w & (effect)) != 0u)
+#define CALLED_FOR(effect) \
+    (HAS(effect) &&        \
+     ((scene[0].effects_low & EFFECTS_LOW(effect)) | (scene[0].effects_high & EFFECTS_HIGH(effect))) != 0u)
 
 SCENE_RO(1, GeometryRecord, geometries)
 SCENE_RO(2, uint, indices)

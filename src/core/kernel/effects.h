@@ -34,19 +34,23 @@
     E(EFFECT_ANISOTROPIC, 26, "anisotropic-roughness", "a tangent from the texture coordinates at every hit")         \
     E(EFFECT_MEDIUM, 27, "medium-absorption", "three exponentials per ray and shadow ray in a medium that absorbs")
 
-#define LAMPYRIS_EFFECT_CONSTANT(constant, bit, name, cost) CONST uint constant = 1u << bit;
+// An EffectSet has 64 bits: one integer in C++, two in GLSL, where integers of 64 bits are an extension.
+#define LAMPYRIS_EFFECT_CONSTANT(constant, bit, name, cost) CONST EffectSet constant = EFFECT_BIT(bit);
 LAMPYRIS_EFFECTS(LAMPYRIS_EFFECT_CONSTANT)
 #undef LAMPYRIS_EFFECT_CONSTANT
-CONST uint kAllEffects = 0x0fffffffu;
+#define LAMPYRIS_OR_EFFECT(constant, bit, name, cost) | constant
+CONST EffectSet kAllEffects = EffectSet(0u) LAMPYRIS_EFFECTS(LAMPYRIS_OR_EFFECT);
+#undef LAMPYRIS_OR_EFFECT
 // Sets that C++ kernels are built for (KERNEL_CPU_VARIANTS): a scene runs on the smallest one that has all of its effects.
-CONST uint kDiffuseEffects = EFFECT_SMOOTH_NORMALS | EFFECT_AREA_LIGHTS;
-CONST uint kGlassEffects =
+CONST EffectSet kDiffuseEffects = EFFECT_SMOOTH_NORMALS | EFFECT_AREA_LIGHTS;
+CONST EffectSet kGlassEffects =
     kDiffuseEffects | EFFECT_QUADRICS | EFFECT_QUADRIC_LIGHTS | EFFECT_CONDUCTOR | EFFECT_DIELECTRIC | EFFECT_ROUGH;
 // Opaque, untextured surfaces under lights that are not surfaces themselves.
-CONST uint kSkyEffects = EFFECT_SMOOTH_NORMALS | EFFECT_QUADRICS | EFFECT_CONDUCTOR | EFFECT_ROUGH | EFFECT_IMAGES |
-                         EFFECT_POINT_LIGHTS | EFFECT_DISTANT_LIGHTS | EFFECT_ENVIRONMENT | EFFECT_ENVIRONMENT_IMAGE;
-CONST uint kTexturedEffects = kGlassEffects | EFFECT_TEXTURES | EFFECT_IMAGES | EFFECT_POINT_LIGHTS |
-                              EFFECT_DISTANT_LIGHTS | EFFECT_ENVIRONMENT | EFFECT_ENVIRONMENT_IMAGE |
-                              EFFECT_DEPTH_OF_FIELD;
+CONST EffectSet kSkyEffects = EFFECT_SMOOTH_NORMALS | EFFECT_QUADRICS | EFFECT_CONDUCTOR | EFFECT_ROUGH |
+                              EFFECT_IMAGES | EFFECT_POINT_LIGHTS | EFFECT_DISTANT_LIGHTS | EFFECT_ENVIRONMENT |
+                              EFFECT_ENVIRONMENT_IMAGE;
+CONST EffectSet kTexturedEffects = kGlassEffects | EFFECT_TEXTURES | EFFECT_IMAGES | EFFECT_POINT_LIGHTS |
+                                   EFFECT_DISTANT_LIGHTS | EFFECT_ENVIRONMENT | EFFECT_ENVIRONMENT_IMAGE |
+                                   EFFECT_DEPTH_OF_FIELD;
 
 #endif

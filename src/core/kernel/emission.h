@@ -76,11 +76,11 @@ FN bool emit_photon(uint u_choice, float u_side, vec2 u_place, uvec2 u_direction
     e.origin = vec3(0.0f);
     e.direction = vec3(0.0f, 0.0f, 1.0f);
     e.power = vec3(0.0f);
-    uint count = scene[0].lights.x;
+    uint count = scene[0].light_count;
     e.light = NONE;
     e.medium = MEDIUM_VACUUM;
     if (count == 0u) return false;
-    e.light = count == 1u ? 0u : find_interval(scene[0].lights.z, count, cdf_number(u_choice));
+    e.light = count == 1u ? 0u : find_interval(scene[0].light_cdf, count, cdf_number(u_choice));
     uint kind = lights[e.light].data.x;
     bool found = false;
     if (HAS(EFFECT_AREA_LIGHTS) && kind <= LIGHT_GEOMETRY) {

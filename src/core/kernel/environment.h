@@ -41,7 +41,7 @@ FN float infinite_image_pdf(uint light, IN(TransformRecord) m, vec3 direction, u
 FN vec3 environment_radiance(vec3 direction) {
     vec3 sum = vec3(0.0f);
     if (!HAS(EFFECT_ENVIRONMENT)) return sum;
-    for (uint light = 0u; light < scene[0].lights.y; ++light) {
+    for (uint light = 0u; light < scene[0].infinite_lights; ++light) {
         if (HAS(EFFECT_ENVIRONMENT_IMAGE) && lights[light].data.x == LIGHT_INFINITE_IMAGE) {
             TransformRecord m = transforms[lights[light].data.w];
             sum = sum + infinite_image_radiance(light, environment_texel(light, m, direction));
@@ -56,7 +56,7 @@ FN vec3 environment_radiance(vec3 direction) {
 FN float environment_pdf(vec3 direction) {
     float sum = 0.0f;
     if (!HAS(EFFECT_ENVIRONMENT)) return sum;
-    for (uint light = 0u; light < scene[0].lights.y; ++light) {
+    for (uint light = 0u; light < scene[0].infinite_lights; ++light) {
         float pdf = pdf_uniform_sphere();
         if (HAS(EFFECT_ENVIRONMENT_IMAGE) && lights[light].data.x == LIGHT_INFINITE_IMAGE) {
             TransformRecord m = transforms[lights[light].data.w];
@@ -84,7 +84,7 @@ FN bool environment_sample(uint light, uvec2 u, OUT(vec3) direction, OUT(vec3) r
     } else {
         direction = sample_uniform_sphere(unit_floats(u));
     }
-    if (scene[0].lights.y > 1u) {
+    if (scene[0].infinite_lights > 1u) {
         radiance = environment_radiance(direction);
         pdf = environment_pdf(direction);
     }

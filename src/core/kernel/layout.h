@@ -238,11 +238,19 @@ struct CameraRecord {
 
 struct SceneRecord {
     CameraRecord camera;
-    uvec4
-        lights;  // number of lights, number of infinite ones, offset of the choosing CDF in `distributions` (count + 1 integers), luminous power of all (a float's bits, W)
-    uvec4 counts;  // geometries, instances, root node of the top-level BVH, effects that the scene calls for
-    uvec4 media;   // x: the camera's medium
-    vec4 bounds;   // world's bounding sphere: centre, radius
+    uint light_count;
+    uint infinite_lights;  // the first so many of the lights
+    uint light_cdf;        // offset of the CDF by which lights are chosen in `distributions` (light_count + 1 integers)
+    float light_power;     // luminous power of all lights (W)
+    uint geometry_count;
+    uint instance_count;
+    uint root_node;      // of the top-level BVH
+    uint effects_low;    // effects that the scene calls for: the lower 32 bits of the EffectSet
+    uint camera_medium;  // in which the camera is
+    uint effects_high;   // the upper 32 bits
+    uint unused0;
+    uint unused1;
+    vec4 bounds;  // the world's bounding sphere: centre, radius
 };
 
 // ---- Film ------------------------------------------------------------------------------------------------------------

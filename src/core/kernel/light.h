@@ -160,10 +160,10 @@ FN bool sample_point_light(uint index, vec3 ref_p, INOUT(LightSample) s) {
 
 // ---- All lights ------------------------------------------------------------------------------------------------------
 
-// Of so many lights one is chosen by the first number of the place on it, which keeps enough digits for the place (the share of
-// samples that all lights have alike sees to that); no number is needed for the choice, and both are stratified together.
+// Up to this many lights, u.x picks the light and is rescaled to place the point on it: it keeps enough digits (the share of
+// samples that all lights have alike sees to that), needs no other number, and stratifies both together.
 CONST uint LIGHTS_CHOSEN_BY_PLACE = 256u;
-FN bool light_choice_needs_number() { return scene[0].lights.x > LIGHTS_CHOSEN_BY_PLACE; }
+FN bool light_choice_needs_number() { return scene[0].light_count > LIGHTS_CHOSEN_BY_PLACE; }
 
 // Chooses a light (in proportion to its power) and samples it from ref_p, by the bits of random numbers (random.h); false where
 // no light arrives.
@@ -174,18 +174,18 @@ FN bool light_sample(vec3 ref_p, uint u_choice, uvec2 u_place, OUT(LightSample) 
     s.distance = INFINITE_DISTANCE;
     s.end = vec3(0.0f);
     s.is_delta = 0u;
-    uint count = scene[0].lights.x;
+    uint count = scene[0].light_count;
     s.light = NONE;
     if (count == 0u) return false;
     uvec2 u = u_place;
     if (light_choice_needs_number()) {
-        s.light = find_interval(scene[0].lights.z, count, cdf_number(u_choice));
+        s.light = find_interval(scene[0].light_cdf, count, cdf_number(u_choice));
     } else if (count == 1u) {
         s.light = 0u;
     } else {
         uint number = cdf_number(u.x);
-        s.light = find_interval(scene[0].lights.z, count, number);
-        float place = place_in_interval(scene[0].lights.z + s.light, number, 0.5f);
+        s.light = find_interval(scene[0].light_cdf, count, number);
+        float place = place_in_interval(scene[0].light_cdf + s.light, number, 0.5f);
         // Bits again: those beyond a float's are made of the other number's.
         u.x = (uint(place * 16777216.0f) << 8u) | (hash32(u.y) >> 24u);
     }

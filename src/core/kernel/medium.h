@@ -29,7 +29,7 @@ FN uint medium_behind(IN(Surface) s, vec3 direction, uint current) {
     return medium_on_side(s.geometry, s.ng, direction);
 }
 
-FN uint camera_medium() { return HAS(EFFECT_MEDIUM) ? scene[0].media.x : MEDIUM_VACUUM; }
+FN uint camera_medium() { return HAS(EFFECT_MEDIUM) ? scene[0].camera_medium : MEDIUM_VACUUM; }
 
 // The medium into which a light sends in a direction. `ng` is the normal of an area light at the point, and of no account for
 // other lights; as in pbrt-v4 an area light's medium is its shape's.

@@ -7,7 +7,7 @@
 
 #include "core/kernel/photon.h"
 
-// What is no number lands in cell 0.
+// NaN maps to cell 0.
 FN uint grid_coordinate(float x, float origin, float inverse, uint cells) {
     float t = (x - origin) * inverse;
     return t > 0.0f ? min(uint(min(t, float(GRID_MAX_CELLS))), cells - 1u) : 0u;

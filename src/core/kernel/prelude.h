@@ -1,7 +1,7 @@
 // The kernel dialect: the common subset of GLSL and C++20 in which every kernel is written once.
 //
 // glslang compiles kernel files to SPIR-V; the C++ compiler builds the same files inside a class template
-// (`template <uint kEffects> struct Kernel { ... };`, see cpp_kernel.h), where buffers become member pointers.
+// (`template <EffectSet kEffects> struct Kernel { ... };`, see cpp_kernel.h), where buffers become member pointers.
 // This is the only kernel file that asks which of the two compilers reads it. docs/kernel-dialect.md explains the rules.
 #ifndef LAMPYRIS_KERNEL_PRELUDE
 #define LAMPYRIS_KERNEL_PRELUDE
@@ -29,6 +29,8 @@
 #define BUFFER_RO(binding_, T, name) const T* __restrict name = static_cast<const T*>(kernel_buffers_[binding_]);
 #define BUFFER_RW(binding_, T, name) T* __restrict name = static_cast<T*>(kernel_buffers_[binding_]);
 #define HAS(effect) ((kEffects & (effect)) != 0u)
+#define EFFECTS_LOW(effects) uint(effects)
+#define EFFECTS_HIGH(effects) uint((effects) >> 32u)
 // An array of the invocation's own that several functions use; what it holds is indeterminate at first. GLSL copies a struct with an
 // array, element by element, at each call that it is given to.
 #define PRIVATE(T, name, count) T name[count] = {};
@@ -73,7 +75,9 @@ CONST bool DRIVERS_END_LOOPS = false;
     layout(std430, set = 1, binding = binding_) readonly restrict buffer name##Block { T name[]; };
 #define BUFFER_RW(binding_, T, name) \
     layout(std430, set = 1, binding = binding_) restrict buffer name##Block { T name[]; };
-#define HAS(effect) ((kEffects & (effect)) != 0u)
+#define HAS(effect) (((kEffects & (effect)).x | (kEffects & (effect)).y) != 0u)
+#define EFFECTS_LOW(effects) (effects).x
+#define EFFECTS_HIGH(effects) (effects).y
 #define PRIVATE(T, name, count) T name[count];
 #define KERNEL(name) void kernel_main(uint index)
 #define ATOMIC_ADD_U32(place, value) atomicAdd(place, value)

@@ -67,7 +67,7 @@ FN bool bvh_walk(vec3 origin, vec3 direction, float t_max, bool any_hit, OUT(Hit
     uint best = NONE;
     uint best_instance = 0u;
     uint instance = 0u;
-    uint node = bvh_is_finite(o, d) ? scene[0].counts.z : BVH_END;
+    uint node = bvh_is_finite(o, d) ? scene[0].root_node : BVH_END;
     bool finished = false;
     while (!finished) {
         while ((node & BVH_LEAF) == 0u) {

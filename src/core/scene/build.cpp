@@ -75,8 +75,10 @@ BuiltScene build_scene(SceneDescription&& description, const BuildOptions& optio
     context.check_unused_materials();
     context.check_unused_media();
     finish_lights(context);
-    scene.record.counts = {uint32_t(scene.geometries.size()), uint32_t(scene.instances.size()), kernel::NONE,
-                           scene.effects.mask()};
+    scene.record.geometry_count = uint32_t(scene.geometries.size());
+    scene.record.instance_count = uint32_t(scene.instances.size());
+    scene.record.root_node = kernel::NONE;
+    scene.record_effects(scene.effects.mask());
     // Embree reads 16 bytes at every vertex, the last one included.
     scene.positions.insert(scene.positions.end(), 4, 0.0f);
     scene.unsupported = diagnostics.unsupported_list();

@@ -54,8 +54,8 @@ void finish_lights(BuildContext& context) {
         const double power = light.power * (light.scales_with_scene ? radius * radius : 1.0);
         powers.push_back(std::isfinite(power) ? power : 0.0);  // what is not finite was told above
     }
-    scene.record.lights.x = uint32_t(all.size());
-    scene.record.lights.y = infinite;
+    scene.record.light_count = uint32_t(all.size());
+    scene.record.infinite_lights = infinite;
     if (!all.empty()) choose_lights(scene, powers);
 }
 

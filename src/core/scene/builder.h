@@ -67,12 +67,12 @@ struct BuildContext {
     uint32_t named_material(const std::string& name);
     std::unordered_map<std::string_view, uint32_t> named_materials;  // filled when first asked
     std::unordered_map<uint32_t, uint32_t> mix_depths;  // of mixes in Scene::materials: how deeply they nest
-    // Materials that nothing uses are not built; unknown types and parameters are told all the same.
+    // Materials that nothing uses are not built; unknown types and parameters are still reported.
     void check_unused_materials();
 
     // See Effects::ask.
     template <typename AskedBy>
-    void ask(uint32_t effect, const AskedBy& asked_by) {
+    void ask(uint64_t effect, const AskedBy& asked_by) {
         scene.effects.ask(effect, asked_by);
     }
     // A file name in the scene, relative to the scene file's folder.
@@ -144,7 +144,7 @@ struct MaterialContext {
     kernel::MaterialRecord& record;
     Asker asked_by;
     std::vector<uint32_t> path;  // see BuildContext::material; ends with this one
-    void ask(uint32_t effect) { build.ask(effect, asked_by); }
+    void ask(uint64_t effect) { build.ask(effect, asked_by); }
 };
 using MaterialFactory = void (*)(MaterialContext&);
 Registry<MaterialFactory>& material_registry();
@@ -165,7 +165,7 @@ struct LightContext {
     LightDescription& light;
     ParameterReader& reader;
     Asker asked_by;
-    void ask(uint32_t effect) { build.ask(effect, asked_by); }
+    void ask(uint64_t effect) { build.ask(effect, asked_by); }
 };
 using LightFactory = void (*)(LightContext&);
 Registry<LightFactory>& light_registry();

@@ -84,7 +84,7 @@ uint32_t append_image_distribution(std::span<const float> weights, uint32_t widt
 }
 
 void choose_lights(Scene& scene, std::span<const double> powers) {
-    scene.record.lights.x = uint32_t(scene.lights.size());
+    scene.record.light_count = uint32_t(scene.lights.size());
     if (scene.lights.empty()) return;
     check_weights(powers);
     if (powers.size() != scene.lights.size()) throw std::invalid_argument("one power a light is wanted");
@@ -95,8 +95,8 @@ void choose_lights(Scene& scene, std::span<const double> powers) {
     for (size_t i = 0; i < powers.size(); ++i)
         weights[i] = powers[i] > 0 ? (1.0 - kEvenLightShare) * (powers[i] / sum) + kEvenLightShare / powerful : 0.0;
     const uint32_t offset = append_cdf(weights, scene.distributions);
-    scene.record.lights.z = offset;
-    scene.record.lights.w = std::bit_cast<uint32_t>(float(std::min(sum, double(std::numeric_limits<float>::max()))));
+    scene.record.light_cdf = offset;
+    scene.record.light_power = float(std::min(sum, double(std::numeric_limits<float>::max())));
     for (size_t i = 0; i < scene.lights.size(); ++i) {
         const uint32_t share = scene.distributions[offset + i + 1] - scene.distributions[offset + i];
         scene.lights[i].emission.w = float(share / kTotal);

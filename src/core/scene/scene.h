@@ -36,6 +36,11 @@ struct Scene {
     std::vector<uint32_t> instance_sets;      // set of each instance; [0] = 0
 
     Effects effects;
+    // Tells kernels what the scene calls for.
+    void record_effects(uint64_t mask) {
+        record.effects_low = uint32_t(mask);
+        record.effects_high = uint32_t(mask >> 32);
+    }
     std::string name;                      // file name of the scene
     std::vector<std::string> notes;        // what was mapped or ignored, and is to be said ("Sampler zsobol: ...")
     std::vector<std::string> unsupported;  // with --skip-unsupported: what was left out

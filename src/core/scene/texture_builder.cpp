@@ -14,7 +14,7 @@ namespace {
 
 const char* type_word(bool is_spectrum) { return is_spectrum ? "spectrum" : "float"; }
 
-uint32_t effects_of(const kernel::TextureOp& op) {
+uint64_t effects_of(const kernel::TextureOp& op) {
     switch (op.data.x) {
         case kernel::TEXTURE_IMAGE: return kernel::EFFECT_IMAGES;
         case kernel::TEXTURE_FBM:
@@ -160,7 +160,7 @@ uint32_t TextureBuilder::emit(const TextureProgram& program, Location where, con
     const auto asked_by = [&] { return fmt::format("{} ({})", context_.description.sources->describe(where), what); };
     std::vector<kernel::TextureOp> ops = program.ops;
     for (kernel::TextureOp& op : ops) {
-        if (const uint32_t effects = effects_of(op)) context_.scene.effects.ask(effects, asked_by);
+        if (const uint64_t effects = effects_of(op)) context_.scene.effects.ask(effects, asked_by);
         if (effects_of(op) == kernel::EFFECT_NOISE) op.data.z = images().noise_permutation();
         if (op.data.x != kernel::TEXTURE_IMAGE) continue;
         op.data.z = load(requests_[op.data.z]);

@@ -88,7 +88,7 @@ void build_view(BuildContext& context) {
                      factory(filter);
                  });
     CameraDescription& camera = description.camera;
-    context.scene.record.media = {context.medium(camera.medium), 0u, 0u, 0u};
+    context.scene.record.camera_medium = context.medium(camera.medium);
     if (camera.world_from_camera.animated()) context.refuse_motion(camera.world_from_camera, camera.location);
     if (!invertible(camera.world_from_camera.matrix[0]))
         context.diagnostics.error(camera.location, "the camera's transform cannot be inverted",

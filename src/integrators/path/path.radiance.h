@@ -40,7 +40,7 @@ FN vec3 radiance_along(IN(Ray) ray, INOUT(Sampler) numbers, INOUT(FirstHit) firs
         uvec4 u = sample_bits_2d_2d_at(numbers, dimension + PATH_DIRECTION_AND_LIGHT);
 
         lights_were_sampled = !bsdf_is_specular(v.bsdf);
-        if (lights_were_sampled && scene[0].lights.x > 0u) {
+        if (lights_were_sampled && scene[0].light_count > 0u) {
             uint u_light = 0u;
             if (light_choice_needs_number()) u_light = sample_bits_1d_at(numbers, dimension + PATH_LIGHT_CHOICE);
             radiance += walk.throughput * direct_light(s, v, walk.medium, u_light, uvec2(u.z, u.w), true);

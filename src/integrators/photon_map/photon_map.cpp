@@ -26,7 +26,7 @@ constexpr const char* kAdd = "integrators/photon_map/photon_map_add.kernel.h";
 constexpr double kExpectedPhotons = 50.0, kExpectedOfNearest = 4.0;
 
 // What has surfaces that are followed, so that there may be caustics.
-constexpr uint32_t kSpecularEffects =
+constexpr uint64_t kSpecularEffects =
     kernel::EFFECT_CONDUCTOR | kernel::EFFECT_DIELECTRIC | kernel::EFFECT_THIN_DIELECTRIC | kernel::EFFECT_COAT;
 
 // Points where photons are looked up, one a pixel: hit points of eye paths, or ends of gather rays.
@@ -47,7 +47,7 @@ class PhotonMapRendering {
           pixels_(session.film.pixel_count()),
           hits_(device_, pixels_) {
         check();
-        const uint32_t effects = session.scene.effects.mask();
+        const uint64_t effects = session.scene.effects.mask();
         eye_ = device_.compile(sppm_files::kEye, effects);
         radius_ = device_.compile(sppm_files::kRadius, 0);
         resolve_ = device_.compile(sppm_files::kResolve, effects);

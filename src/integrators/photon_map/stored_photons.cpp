@@ -84,7 +84,7 @@ void StoredPhotons::build(const BufferHandle& queries, uint32_t count, float rad
     set.high = glm::vec3(pass_.high);
     set.seed = session_.seed;
     set.pass = map_->capabilities().exact ? 0 : uint32_t(pass);
-    set.mean_power = std::bit_cast<float>(session_.scene.record.lights.w) / float(paths_);
+    set.mean_power = session_.scene.record.light_power / float(paths_);
     map_->build(set);
     built_ = true;
     built_for_ = pass;

@@ -121,7 +121,7 @@ FN void follow_eye_path(IN(Sampler) numbers, bool from_camera, uint branch_asked
             branch = EYE_BRANCH_CHANCE;
         }
         if (action == VISIBLE_GATHER && branch != EYE_BRANCH_FOLLOWS) {
-            if (from_camera && params[0].direct == SPPM_DIRECT_NEE && scene[0].lights.x > 0u) {
+            if (from_camera && params[0].direct == SPPM_DIRECT_NEE && scene[0].light_count > 0u) {
                 uint u_light = 0u;
                 if (light_choice_needs_number()) u_light = sample_bits_1d_at(numbers, dimension + EYE_LIGHT_CHOICE);
                 uvec2 u_point = sample_bits_2d_at(numbers, dimension + EYE_LIGHT_POINT);

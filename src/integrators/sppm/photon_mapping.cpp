@@ -36,7 +36,7 @@ class PhotonMapping {
                                      : uint32_t(std::clamp<uint64_t>(4 * uint64_t(paths_), 65536, 1u << 30));
         // A part has so few paths that keys tell a photon for each of their bounces apart.
         part_ = std::max(1u, std::min(paths_, std::numeric_limits<uint32_t>::max() / (uint32_t(params.maxdepth) + 1)));
-        const uint32_t effects = session.scene.effects.mask();
+        const uint64_t effects = session.scene.effects.mask();
         window_ = device_.create_buffer(sizeof(kernel::FilmWindow), "film window");
         params_buffer_ = argument_buffer(device_, params_, "parameters");
         SppmParams eye_params = params_;
@@ -205,7 +205,7 @@ class PhotonMapping {
         set.high = glm::vec3(pass_.high);
         set.seed = session_.seed;
         set.pass = pass_.number * 0x9e3779b9u + pass_.first_path;  // each part has its own grid
-        set.mean_power = std::bit_cast<float>(session_.scene.record.lights.w) / float(paths_);
+        set.mean_power = session_.scene.record.light_power / float(paths_);
         map_->build(set);
         map_->gather(consumer_, queries_, 0, points_ * pixels_);
     }

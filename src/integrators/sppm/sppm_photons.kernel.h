@@ -38,7 +38,7 @@ KERNEL(sppm_photons) {
     // Paths of one pass are a stratified set: the path is the sample, the pass takes the pixel's place.
     Sampler numbers = sampler_begin(pass.number, path, pass.seed ^ PHOTON_STREAM, pass.sampler_kind);
     uint u_choice = 0u;
-    if (scene[0].lights.x > 1u) u_choice = sample_bits_1d_at(numbers, 0u);
+    if (scene[0].light_count > 1u) u_choice = sample_bits_1d_at(numbers, 0u);
     uvec2 u_direction = sample_bits_2d_at(numbers, 4u);
     Emission start;
     if (!emit_photon(u_choice, sample_1d_at(numbers, 1u), sample_2d_at(numbers, 2u), u_direction, start)) return;
