@@ -35,7 +35,10 @@ class VulkanDevice final : public Device {
         account_->limit = options.max_memory;
         context_->can.max_storage_range = std::min(context_->can.max_storage_range, largest_binding(options));
         shader_options_.precise = read_switch(options, "precise", Switch::on) != Switch::off;
-        shader_options_.optimize = read_switch(options, "optimize", Switch::on) != Switch::off;
+        const Switch optimize = read_switch(options, "optimize", Switch::automatic);
+        shader_options_.optimize = optimize != Switch::off;
+        // A driver that is a CPU compiles what calls functions in less time than what was inlined before (docs/backends.md).
+        shader_options_.inlined = optimize == Switch::on || (optimize == Switch::automatic && !context_->can.is_cpu);
         shader_options_.local_size = workgroup_size(options);
         specialise_ = read_switch(options, "specialise", Switch::on) != Switch::off;
         const Switch staging = read_switch(options, "staging", Switch::automatic);

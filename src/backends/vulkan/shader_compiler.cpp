@@ -101,8 +101,8 @@ ContentHash key_of(const std::string& source, const ShaderOptions& options) {
     hash.add(kPipelineVersion);
     hash.add(fmt::format("glslang {}.{}.{} {}", GLSLANG_VERSION_MAJOR, GLSLANG_VERSION_MINOR, GLSLANG_VERSION_PATCH,
                          spvSoftwareVersionString()));
-    hash.add(fmt::format("precise {} exact {} {} optimize {}", options.precise, options.exact, options.flush_denormals,
-                         options.optimize));
+    hash.add(fmt::format("precise {} exact {} {} optimize {} inlined {}", options.precise, options.exact,
+                         options.flush_denormals, options.optimize, options.inlined));
     std::set<std::string_view> seen;
     add_text(hash, source, seen);
     return hash;
@@ -143,7 +143,7 @@ Spirv compile_glsl(std::string_view kernel_file, const std::string& source, bool
     return spirv;
 }
 
-Spirv optimize(std::string_view kernel_file, const Spirv& spirv) {
+Spirv optimize(std::string_view kernel_file, const Spirv& spirv, bool inlined) {
     spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_2);
     std::string log;
     optimizer.SetMessageConsumer(
@@ -156,8 +156,10 @@ Spirv optimize(std::string_view kernel_file, const Spirv& spirv) {
         .RegisterPass(spvtools::CreateDeadBranchElimPass())
         .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
         .RegisterPass(spvtools::CreateAggressiveDCEPass(false, true));
-    optimizer.RegisterPerformancePasses();
-    optimizer.RegisterPass(spvtools::CreateAggressiveDCEPass(false, true));
+    if (inlined) {
+        optimizer.RegisterPerformancePasses();
+        optimizer.RegisterPass(spvtools::CreateAggressiveDCEPass(false, true));
+    }
     spvtools::OptimizerOptions options;
     options.set_run_validator(false);
     Spirv result;
@@ -206,7 +208,7 @@ CompiledShader compile_shader(std::string_view kernel_file, const ShaderOptions&
     Spirv spirv = compile_glsl(kernel_file, source, options.exact);  // nothing calls exact.glsl yet
     if (options.exact) spirv = exact_arithmetic(spirv, options.flush_denormals);
     if (options.precise) spirv = forbid_contraction(spirv);
-    if (options.optimize) spirv = optimize(kernel_file, spirv);
+    if (options.optimize) spirv = optimize(kernel_file, spirv, options.inlined);
     cache.store(key, spirv);
     return {std::move(spirv), false};
 }

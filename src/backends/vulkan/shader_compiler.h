@@ -15,9 +15,10 @@ struct ShaderOptions {
     bool precise = true;           // forbid contraction
     bool exact = false;            // quotients and square roots by core/kernel/exact.glsl
     bool flush_denormals = false;  // as the CPU does; only with `exact`
-    bool optimize = true;
-    bool ray_query = false;   // trace with VK_KHR_ray_query instead of the BVH in the shader
-    bool wide_reads = false;  // READ_PAIR by words of 64 bits (prelude.h)
+    bool optimize = true;          // drop what the effects leave out
+    bool inlined = true;           // and inline and simplify the rest, which every driver does once more
+    bool ray_query = false;        // trace with VK_KHR_ray_query instead of the BVH in the shader
+    bool wide_reads = false;       // READ_PAIR by words of 64 bits (prelude.h)
     uint32_t local_size = 64;
 };
 

@@ -149,8 +149,9 @@ FN bool bsdf_chooses_lobe(IN(Bsdf) b) {
 }
 
 // Value f(wo, wi) without the cosine, and density of bsdf_sample choosing wi (per solid angle): 0 where only delta lobes
-// scatter. `transport` says what flows along wi -> wo. A pdf that is not used costs nothing after inlining.
-FN vec3 bsdf_eval_pdf(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport, OUT(float) pdf) {
+// scatter. `transport` says what flows along wi -> wo. `jobs`: which of the two a coat is asked for, LAYERED_VALUE and
+// LAYERED_DENSITY; of other materials, what is not used costs nothing after inlining.
+FN vec3 bsdf_eval_jobs(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport, uint jobs, OUT(float) pdf) {
     pdf = 0.0f;
     if (is_grazing(wo) || is_grazing(wi)) return vec3(0.0f);
     if (b.kind == MATERIAL_DIFFUSE) return diffuse_eval(b.color0, wo, wi, pdf);
@@ -166,34 +167,36 @@ FN vec3 bsdf_eval_pdf(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport, OUT(float) p
     if (HAS(EFFECT_COAT) && RARELY(b.inner >= 0.0f)) return clear_coat_eval(b, wo, wi, pdf);
     if (HAS(EFFECT_COAT) && RARELY(bsdf_is_layered(b))) {
         Bsdf coated = b;
-        pdf = layered_pdf(coated, wo, wi, transport);
-        return layered_eval(coated, wo, wi, transport);
+        BsdfSample none = no_bsdf_sample();
+        vec3 value;
+        float density;
+        layered_scatter(coated, wo, wi, 0.0f, vec2(0.0f), transport, jobs, none, value, density);
+        pdf = density;
+        return value;
     }
     return vec3(0.0f);
 }
 
+FN vec3 bsdf_eval_pdf(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport, OUT(float) pdf) {
+    return bsdf_eval_jobs(b, wo, wi, transport, LAYERED_VALUE | LAYERED_DENSITY, pdf);
+}
+
 FN vec3 bsdf_eval(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport) {
-    if (HAS(EFFECT_COAT) && RARELY(bsdf_is_layered(b) && b.inner < 0.0f)) {
-        Bsdf coated = b;
-        return layered_eval(coated, wo, wi, transport);
-    }
     float pdf;
-    return bsdf_eval_pdf(b, wo, wi, transport, pdf);
+    return bsdf_eval_jobs(b, wo, wi, transport, LAYERED_VALUE, pdf);
 }
 
 FN float bsdf_pdf(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport) {
-    if (HAS(EFFECT_COAT) && RARELY(bsdf_is_layered(b) && b.inner < 0.0f)) {
-        Bsdf coated = b;
-        return layered_pdf(coated, wo, wi, transport);
-    }
     float pdf;
-    bsdf_eval_pdf(b, wo, wi, transport, pdf);
+    bsdf_eval_jobs(b, wo, wi, transport, LAYERED_DENSITY, pdf);
     return pdf;
 }
 
-// A direction wi, from three uniform numbers; false where nothing is scattered (the path ends).
-FN bool bsdf_sample(IN(Bsdf) b, vec3 wo, float uc, vec2 u, uint transport, OUT(BsdfSample) s) {
+// A direction wi, from three uniform numbers; false where nothing is scattered (the path ends). `jobs`: LAYERED_DENSITY, or nothing.
+FN bool bsdf_sample_jobs(IN(Bsdf) b, vec3 wo, float uc, vec2 u, uint transport, uint jobs, OUT(BsdfSample) s,
+                         OUT(float) density) {
     s = no_bsdf_sample();
+    density = 0.0f;
     if (is_grazing(wo)) return false;
     bool found = false;
     if (b.kind == MATERIAL_DIFFUSE) {
@@ -211,10 +214,26 @@ FN bool bsdf_sample(IN(Bsdf) b, vec3 wo, float uc, vec2 u, uint transport, OUT(B
     } else if (HAS(EFFECT_COAT) && RARELY(bsdf_is_layered(b))) {
         Bsdf coated = b;
         BsdfSample chosen = s;
-        found = layered_sample(coated, wo, uc, u, transport, chosen);
+        vec3 value;
+        float chosen_density;
+        found = layered_scatter(coated, wo, wo, uc, u, transport, LAYERED_SAMPLE | jobs, chosen, value, chosen_density);
         s = chosen;
+        density = chosen_density;
     }
+    if (s.pdf_is_proportional == 0u) density = s.pdf;
     return found && s.pdf > 0.0f && !is_black(s.f);
+}
+
+FN bool bsdf_sample(IN(Bsdf) b, vec3 wo, float uc, vec2 u, uint transport, OUT(BsdfSample) s) {
+    float density;
+    return bsdf_sample_jobs(b, wo, uc, u, transport, 0u, s, density);
+}
+
+// The same, with the density of the direction as multiple importance sampling wants it, which s.pdf is not where it is
+// proportional; of a delta lobe, the probability of choosing it.
+FN bool bsdf_sample_density(IN(Bsdf) b, vec3 wo, float uc, vec2 u, uint transport, OUT(BsdfSample) s,
+                            OUT(float) density) {
+    return bsdf_sample_jobs(b, wo, uc, u, transport, LAYERED_DENSITY, s, density);
 }
 
 // The share of light that it scatters, roughly and without noise: for the albedo channel of images.

@@ -34,7 +34,7 @@ struct BsdfSample {
     float pdf;                 // 1/sr; for a specular lobe the probability of choosing it
     float eta;                 // relative index along a refraction (transmitted over incident side), else 1
     uint lobe;                 // LOBE_REFLECTION or LOBE_TRANSMISSION, and LOBE_DIFFUSE, LOBE_GLOSSY or LOBE_SPECULAR
-    uint pdf_is_proportional;  // 1: f and pdf share an unknown factor (layered); for MIS ask bsdf_pdf instead
+    uint pdf_is_proportional;  // 1: f and pdf share an unknown factor (layered); for MIS see bsdf_sample_density
 };
 
 FN BsdfSample no_bsdf_sample() {

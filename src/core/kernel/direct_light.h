@@ -9,7 +9,8 @@ FN vec3 direct_light(IN(Surface) s, IN(Vertex) v, uint medium, uint u_choice, uv
     if (!light_sample(s.position, u_choice, u, light)) return vec3(0.0f);
     vec3 wi = to_local(v.frame, light.wi);
     float density;
-    vec3 f = bsdf_eval_pdf(v.bsdf, v.wo, wi, TRANSPORT_RADIANCE, density) * abs(wi.z);
+    uint jobs = weighted ? LAYERED_VALUE | LAYERED_DENSITY : LAYERED_VALUE;
+    vec3 f = bsdf_eval_jobs(v.bsdf, v.wo, wi, TRANSPORT_RADIANCE, jobs, density) * abs(wi.z);
     if (is_black(f)) return vec3(0.0f);
     vec3 arriving = scene_transmittance(s, light.wi, light.distance, light.end, medium);
     if (is_black(arriving)) return vec3(0.0f);

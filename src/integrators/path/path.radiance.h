@@ -49,8 +49,8 @@ FN vec3 radiance_along(IN(Ray) ray, INOUT(Sampler) numbers, INOUT(FirstHit) firs
         BsdfSample next;
         float u_lobe = 0.0f;
         if (bsdf_chooses_lobe(v.bsdf)) u_lobe = sample_1d_at(numbers, dimension + PATH_LOBE);
-        if (!bsdf_sample(v.bsdf, v.wo, u_lobe, unit_floats(uvec2(u.x, u.y)), TRANSPORT_RADIANCE, next)) break;
-        bsdf_density = next.pdf_is_proportional != 0u ? bsdf_pdf(v.bsdf, v.wo, next.wi, TRANSPORT_RADIANCE) : next.pdf;
+        vec2 u_direction = unit_floats(uvec2(u.x, u.y));
+        if (!bsdf_sample_density(v.bsdf, v.wo, u_lobe, u_direction, TRANSPORT_RADIANCE, next, bsdf_density)) break;
         if ((next.lobe & LOBE_SPECULAR) != 0u) lights_were_sampled = false;
         previous = s.position;
         if (!walk_leave(walk, s, v, next, params[0].rrdepth, numbers, dimension + PATH_ROULETTE)) break;
