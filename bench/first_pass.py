@@ -25,7 +25,7 @@ def first_pass(folder: Path, scene: Path, integrator: str | None) -> dict:
         os.environ["MESA_SHADER_CACHE_DIR"] = scratch
         statistics = Path(scratch) / "stats.json"
         command = [folder / "lampyris", "render", scene, "-o", Path(scratch) / "image.pfm", "--stats", statistics]
-        command += ["--backend", "vulkan", "--set", "backend.cache=off", "--resolution", "16x16", "--spp", "1"]
+        command += ["--backend", "vulkan", "--set", "backend.cache=off", "--resolution", "16x16", "--passes", "1"]
         if integrator:
             command += ["--integrator", integrator]
         before = resource.getrusage(resource.RUSAGE_CHILDREN)

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Keep hashes of small images of every scene, to show that a change of the code changes no image.
 
-Usage: build/venv/bin/python tools/image_hashes.py record OUT.json [--program PROGRAM] [--backend B]... [--integrator I]... [--scene PATTERN]...
+Usage: build/venv/bin/python tools/image_hashes.py record OUT.json [OPTION]...
        build/venv/bin/python tools/image_hashes.py compare BEFORE.json AFTER.json
 
-`record` renders each scene below scenes/ with each integrator on each backend, two passes of few pixels, and writes a hash of
-the pixels of all channels of each image. `compare` names what differs, and exits with 1 if anything does.
+`record` renders each scene below scenes/ with each integrator on each backend, two passes of few pixels, and writes a
+hash of the pixels of all channels of each image. `compare` names what differs, and exits with 1 if anything does.
 """
+
 import argparse
 import hashlib
 import json
@@ -42,8 +43,23 @@ def render(program: Path, scene: Path, integrator: str, backend: str, folder: Pa
     """The hash of an image, or the program's last words where there is none."""
     image = folder / "image.exr"
     image.unlink(missing_ok=True)
-    command = [program, "render", scene, "-o", image, "-q", "--backend", backend, "--integrator", integrator,
-               "--resolution", "24x16", "--seed", "7", *INTEGRATORS[integrator]]
+    command = [
+        program,
+        "render",
+        scene,
+        "-o",
+        image,
+        "-q",
+        "--backend",
+        backend,
+        "--integrator",
+        integrator,
+        "--resolution",
+        "24x16",
+        "--seed",
+        "7",
+        *INTEGRATORS[integrator],
+    ]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     return hash_of(image) if image.exists() else f"exit {done.returncode}: {done.stderr.strip().splitlines()[-1:]}"
 
@@ -71,8 +87,10 @@ def compare(options: argparse.Namespace) -> int:
     for key in different:
         print(f"{key}: {before[key]} became {after[key]}")
     failed = sorted(key for key in both if "exit" in after[key])
-    print(f"{len(both) - len(different)} of {len(both)} are the same; {len(failed)} have no image"
-          f"; {len(before.keys() ^ after.keys())} are in one file only")
+    print(
+        f"{len(both) - len(different)} of {len(both)} are the same; {len(failed)} have no image"
+        f"; {len(before.keys() ^ after.keys())} are in one file only"
+    )
     return 1 if different else 0
 
 
