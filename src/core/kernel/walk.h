@@ -40,7 +40,8 @@ struct Vertex {
 
 // ---- Loops that a driver ends ----------------------------------------------------------------------------------------
 // A turn sets walk_turn to walk_turns, and back once it is known that another one follows: whoever leaves the loop leaves it
-// there. A loop that was ended by the driver does not. Not in Walk, so that whoever writes a loop need not think of it.
+// there. A loop that was ended by the driver does not. Both are 0 until the first turn: a walk need not take any. Not in Walk,
+// so that whoever writes a loop need not think of it.
 
 PRIVATE(uint, walk_turn, 1)
 PRIVATE(uint, walk_turns, 1)
@@ -49,17 +50,19 @@ FN void walk_check() {
     if (DRIVERS_END_LOOPS && walk_turn[0] != walk_turns[0]) REPORT_UNFINISHED();
 }
 
-FN void walk_opens(IN(Walk) w) {
+FN void walk_opens() {
     if (!DRIVERS_END_LOOPS) return;
     walk_check();  // of the walk before
     walk_turn[0] = 0u;
-    walk_turns[0] = uint(w.maxdepth) + MAX_PASSED_SURFACES + 2u;  // more than it has
+    walk_turns[0] = 0u;
 }
 
 FN bool walk_takes_turn(IN(Walk) w) {
     if (HAS(EFFECT_INTERFACE | EFFECT_ALPHA) && w.passed > MAX_PASSED_SURFACES) return false;
     if (!DRIVERS_END_LOOPS) return true;
-    if (!(walk_turn[0] < walk_turns[0])) return false;
+    bool first = walk_turns[0] == 0u;
+    if (first) walk_turns[0] = uint(w.maxdepth) + MAX_PASSED_SURFACES + 2u;  // more than it has
+    if (!first && !(walk_turn[0] < walk_turns[0])) return false;
     walk_turn[0] = walk_turns[0];
     return true;
 }
@@ -81,7 +84,7 @@ FN Walk walk_begin(IN(Ray) ray, uint medium, uint transport, int maxdepth) {
     w.maxdepth = maxdepth;
     w.passed = 0u;
     w.escaped = false;
-    walk_opens(w);
+    walk_opens();
     return w;
 }
 
