@@ -1,6 +1,5 @@
 """The accuracy experiment on made-up records, whose curves, forecasts and theory are known."""
 
-import itertools
 import json
 import math
 
@@ -10,7 +9,6 @@ from accuracy import curves, forecast, knobs, measured, slopes, summary, theory
 from lab.catalogue import EXPERIMENTS, Catalogue, read_toml
 from lab.images import ROOT
 from lab.runs import Machine
-from lab.statistics import LATER, Reached, log_slope
 from lab.target import Target
 
 METHODS = """
@@ -203,21 +201,6 @@ def test_spreads_that_overlap_are_ties(same_curves, tmp_path):
     assert row["ties"].startswith("SPPM ")
 
 
-@pytest.mark.parametrize(
-    ("low", "high", "halved", "outcome"),
-    [
-        (1.0, 3.0, Reached(2.0), forecast.RIGHT),
-        (1.0, 3.0, Reached(0.5), forecast.WRONG),
-        (1.0, math.inf, Reached(99.0), forecast.RIGHT),
-        (1.0, 3.0, Reached(4.0, LATER), forecast.WRONG),
-        (1.0, 3.0, Reached(0.5, LATER), forecast.RIGHT),
-        (1.0, 3.0, Reached(2.0, LATER), forecast.OPEN),
-    ],
-)
-def test_forecasts_are_right_wrong_or_open(low, high, halved, outcome):
-    assert forecast.judge(low, high, halved) == outcome
-
-
 def forecasting(factor, unstable=False):
     """Error 1/n and halvings that take as long again, forecast as `factor` times that, within a fifth."""
 
@@ -269,31 +252,6 @@ def test_estimates_that_are_far_off_should_be_called_unstable(same_curves, tmp_p
     assert section.verdicts[1].holds == holds
 
 
-def test_radii_follow_the_recurrence():
-    found = theory.scale(np.arange(6), 0.7)
-    factors = [(i + 0.7) / (i + 1) for i in range(1, 6)]
-    assert found == pytest.approx(list(itertools.accumulate(factors, lambda a, b: a * b, initial=1.0)))
-
-
-def test_a_disk_under_the_light_has_the_mean_that_calculus_says():
-    """Over a disk about the foot the mean of (1 + d^2)^(-3/2) is 2/r^2 (1 - 1/sqrt(1 + r^2))."""
-    found = theory.disk_mean(np.array([0.0]), 0.5, 1.0)[0]
-    assert found == pytest.approx(2 / 0.25 * (1 - 1 / math.sqrt(1.25)), rel=1e-9)
-
-
-def test_theory_of_many_passes_tends_to_its_limits():
-    passes = [2**10, 2**14]
-    bias, variance = theory.point_light_parts(np.array([0.0, 0.3]), passes, 0.7, 0.2, 0.9, 5000)
-    assert log_slope(passes, variance) == pytest.approx(theory.variance_limit(0.7), abs=0.01)
-    assert log_slope(passes, bias) == pytest.approx(theory.bias_limit(0.7), abs=0.05)
-
-
-def test_pixels_lie_where_the_scene_has_them():
-    found = slopes.distances((4, 4), [0.25, 0.75])
-    assert found[0, 2] == pytest.approx(0.0)
-    assert found[3, 0] == pytest.approx(math.hypot(1.0, 1.5))
-
-
 def test_images_of_known_bias_and_variance_are_taken_apart(planned, monkeypatch, tmp_path):
     """Noise of exactly theory's variance, and theory's bias: verdicts agree. A bias that does not fall is told."""
     count, shape = 12, (16, 16)
@@ -337,11 +295,6 @@ def _standard_noise(seed, count, shape):
     noise = np.random.default_rng(seed).normal(size=(count, *shape))
     noise -= noise.mean(axis=0)
     return noise / noise.std(axis=0, ddof=1)
-
-
-def test_parameters_are_set_in_their_place():
-    assert knobs.with_parameter("sppm", "alpha", 0.5) == "sppm:alpha=0.5"
-    assert knobs.with_parameter("sppm:alpha=0.7,store=0", "alpha", 0.5) == "sppm:store=0,alpha=0.5"
 
 
 def test_knobs_are_turned_one_at_a_time(planned):
