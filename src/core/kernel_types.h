@@ -19,5 +19,6 @@ using glm::vec4;
 #include "core/kernel/effects.h"
 #include "core/kernel/layout.h"
 #include "core/kernel/photon_layout.h"
+#include "core/kernel/scene_buffers.h"
 #undef CONST
 }  // namespace lampyris::kernel

@@ -3,6 +3,7 @@
 #ifndef __cplusplus
 #include "core/kernel/effects.h"
 #include "core/kernel/layout.h"
+#include "core/kernel/scene_buffers.h"
 #endif
 #include "core/kernel/bindings.h"
 #include "core/kernel/math.h"

@@ -3,17 +3,21 @@
 
 #include "core/device.h"
 #include "core/kernel_registry.h"
+#include "core/kernel_types.h"
 
 #include <array>
 #include <memory>
+#include <vector>
 
 namespace lampyris {
 
+class Bvh2Scene;
 class EmbreeScene;
+struct SceneBuffer;
 
 class CpuScene final : public DeviceScene {
  public:
-    static constexpr size_t kBufferCount = 24;  // of core/kernel/bindings.h, with room
+    static constexpr size_t kBufferCount = kernel::SCENE_BINDINGS;
     CpuScene(const Scene& scene, CpuTracerKind tracer);
     ~CpuScene() override;
     void* const* buffers() const { return buffers_.data(); }
@@ -22,10 +26,11 @@ class CpuScene final : public DeviceScene {
     const EmbreeScene* embree() const { return embree_.get(); }
 
  private:
-    std::array<void*, kBufferCount> buffers_{};
-    struct OwnBvh;
-    std::unique_ptr<EmbreeScene> embree_;  // of backend cpu
-    std::unique_ptr<OwnBvh> bvh_;          // of backend cpu-bvh2
+    void bind(const std::vector<SceneBuffer>& buffers);
+
+    std::array<void*, kBufferCount> buffers_{};  // by binding
+    std::unique_ptr<EmbreeScene> embree_;        // of backend cpu
+    std::unique_ptr<Bvh2Scene> bvh_;             // of backend cpu-bvh2
     CpuTracer tracer_;
     size_t memory_ = 0;
 };

@@ -61,7 +61,7 @@ class VulkanDevice final : public Device {
         unfinished_ = std::make_unique<VulkanBuffer>(context_, account_, sizeof(uint32_t), "the unfinished flag",
                                                      BufferOptions{.read_back = true});
         unfinished_->fill_zero();
-        no_scene_.buffers[kUnfinishedBinding] = unfinished_->binding();
+        no_scene_.buffers[kernel::BINDING_UNFINISHED] = unfinished_->binding();
         // Drivers that are a CPU divide by its instructions, which round as IEEE 754 says.
         const Switch exact = read_switch(options, "exact", Switch::off);
         shader_options_.exact = exact == Switch::on || (exact == Switch::automatic && !context_->can.is_cpu);

@@ -31,7 +31,7 @@ bool VulkanKernel::uses_acceleration_structure() const {
 
 bool VulkanKernel::uses_scene() const {
     return std::any_of(bindings_.begin(), bindings_.end(),
-                       [](const auto& b) { return b.set == 0 && b.binding != kUnfinishedBinding; });
+                       [](const auto& b) { return b.set == 0 && b.binding != kernel::BINDING_UNFINISHED; });
 }
 
 KernelPipeline& VulkanKernel::pipeline(const SceneBindings& scene, std::span<const KernelBinding> buffers,

@@ -3,6 +3,7 @@
 
 #include "backends/vulkan/pipeline.h"
 #include "backends/vulkan/shader_compiler.h"
+#include "core/kernel_types.h"
 
 #include <functional>
 #include <map>
@@ -10,13 +11,9 @@
 
 namespace lampyris::vulkan {
 
-// Set 0: the scene. Bindings 0 to 15 and 18 are those of core/kernel/bindings.h.
-constexpr uint32_t kTopLevelBinding = 16;    // acceleration structure, with ray query
-constexpr uint32_t kUnfinishedBinding = 17;  // see REPORT_UNFINISHED in core/kernel/prelude.h
-constexpr uint32_t kSceneBindings = 19;
-
+// Set 0: the scene (core/kernel/scene_buffers.h).
 struct SceneBindings {
-    std::vector<KernelBinding> buffers = std::vector<KernelBinding>(kSceneBindings);
+    std::vector<KernelBinding> buffers = std::vector<KernelBinding>(kernel::SCENE_BINDINGS);
     vk::AccelerationStructureKHR top_level;
 };
 

@@ -310,4 +310,21 @@ Bvh2 build_bvh2(const Scene& scene) {
     }
 }
 
+Bvh2Scene::Bvh2Scene(const Scene& scene)
+    : scene_(scene), bvh_(build_bvh2(scene)), record_(scene.record), instances_(scene.instances) {
+    record_.root_node = bvh_.roots[0];
+    for (size_t i = 0; i < instances_.size(); ++i) instances_[i].data.z = bvh_.roots[i];
+}
+
+std::vector<SceneBuffer> Bvh2Scene::buffers() const {
+    std::vector<SceneBuffer> buffers = scene_buffers(scene_);
+    for (SceneBuffer& buffer : buffers) {
+        if (buffer.binding == kernel::BINDING_RECORD) buffer.data = &record_;
+        if (buffer.binding == kernel::BINDING_INSTANCES) buffer.data = instances_.data();
+    }
+    buffers.push_back(scene_buffer(kernel::BINDING_BVH_NODES, bvh_.nodes, "BVH nodes"));
+    buffers.push_back(scene_buffer(kernel::BINDING_BVH_TRIANGLES, bvh_.triangles, "BVH primitives"));
+    return buffers;
+}
+
 }  // namespace lampyris

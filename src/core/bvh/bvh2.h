@@ -2,13 +2,12 @@
 #pragma once
 
 #include "core/kernel_types.h"
+#include "core/scene/scene_buffers.h"
 
 #include <cstdint>
 #include <vector>
 
 namespace lampyris {
-
-struct Scene;
 
 struct Bvh2 {
     std::vector<kernel::BvhNode> nodes;
@@ -23,5 +22,19 @@ struct Bvh2 {
 // world's tree. Primitives with coordinates that are not finite are left out, as Embree does.
 // Throws MachineError where there is no memory, or where there are more primitives than a leaf can address.
 Bvh2 build_bvh2(const Scene& scene);
+
+// A scene with its BVH2: the scene's buffers, and in their place what names the BVH's roots. The scene must outlive this.
+class Bvh2Scene {
+ public:
+    explicit Bvh2Scene(const Scene& scene);
+    const Bvh2& bvh() const { return bvh_; }
+    std::vector<SceneBuffer> buffers() const;
+
+ private:
+    const Scene& scene_;
+    Bvh2 bvh_;
+    kernel::SceneRecord record_;
+    std::vector<kernel::InstanceRecord> instances_;
+};
 
 }  // namespace lampyris

@@ -6,6 +6,7 @@
 #ifndef __cplusplus  // C++ has the layouts in its namespace already (cpp_kernel.h)
 #include "core/kernel/effects.h"
 #include "core/kernel/layout.h"
+#include "core/kernel/scene_buffers.h"
 #endif
 #include "core/kernel/bindings.h"
 #include "core/kernel/surface.h"

@@ -15,7 +15,7 @@ struct GeometrySet {
     uint32_t first_geometry = 0, geometry_count = 0;
 };
 
-// Arrays are those of core/kernel/bindings.h, element for element (layouts in core/kernel/layout.h).
+// Arrays are those of core/kernel/scene_buffers.h, element for element (layouts in core/kernel/layout.h).
 struct Scene {
     kernel::SceneRecord record{};
     std::vector<kernel::GeometryRecord> geometries;
