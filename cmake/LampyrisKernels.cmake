@@ -3,7 +3,7 @@
 #
 # Makes kernel files part of a target, for both compilers: each *.kernel.h becomes C++ translation units (one per effect
 # variant, see backends/cpu/variants) and, with the headers, its text is embedded (.incbin) for glslang at run time.
-# A file is known by its path below BASE ("integrators/path/path.kernel.h"); the kernel's name is the file's name.
+# A file is known by its path below BASE ("integrators/path/path.radiance.h"); the kernel's name is the file's name.
 #
 # A gather kernel is a pair of files, CONSUMER+GATHER (src/core/kernel/gather.h): each gather file is built with each
 # consumer, and with the consumers that another target has (OTHER_..., by name), and the other way round.

@@ -1,7 +1,7 @@
 # lampyris_add_plugin(NAME SOURCES files... [KERNELS files...] [HEADERS files...] [GATHERS files...] [CONSUMERS files...])
 #
 # A shared object NAME.so that `lampyris --plugin` and LAMPYRIS_PLUGIN_PATH load. Kernels are known by their path below the
-# current folder's parent ("facing/facing.kernel.h"), as the built-in ones are known by theirs below src/.
+# current folder's parent ("facing/facing.radiance.h"), as the built-in ones are known by theirs below src/.
 # HEADERS are what kernels include, beyond Lampyris' own. A photon map's GATHERS are built with each consumer that Lampyris or
 # this plugin has, and CONSUMERS with each photon map.
 set(LAMPYRIS_PLUGIN_DIR ${CMAKE_CURRENT_LIST_DIR})

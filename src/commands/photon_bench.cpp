@@ -98,15 +98,15 @@ PhotonBenchFloor measure_floor(Device& device, uint32_t points, const PhotonBenc
     const glm::uvec4 arguments(points, 0, 0, 0);
     const BufferHandle count = device.create_buffer(sizeof arguments, "benchmark arguments");
     count->upload(&arguments, sizeof arguments);
-    const auto measure = [&](const char* file, size_t bytes) {
+    const auto measure = [&](const char* file, const char* name, size_t bytes) {
         const KernelHandle kernel = device.compile(file, 0);
-        const std::array buffers{count, device.create_buffer(bytes * points, "benchmark")};
+        const NamedBuffer buffers[] = {{"arguments", count}, {name, device.create_buffer(bytes * points, "benchmark")}};
         const double seconds =
             median_seconds(settings, [&] { device.run(*kernel, nullptr, buffers, 0, span_count(points)); });
         return seconds * 1e9 / points;
     };
-    floor.scatter_ns = measure("core/kernel/bench_scatter.kernel.h", 16);
-    floor.atomic_ns = measure("core/kernel/bench_atomic.kernel.h", 4);
+    floor.scatter_ns = measure("core/kernel/bench_scatter.kernel.h", "records", 16);
+    floor.atomic_ns = measure("core/kernel/bench_atomic.kernel.h", "counters", 4);
 
     return floor;
 }
@@ -161,7 +161,7 @@ PhotonBenchRow measure_photon_map(Device& device, const std::string& structure, 
     set.query_count = settings.queries;
     set.mean_power = 1.0f;
     const BufferHandle results = device.create_buffer(queries.size() * sizeof(CollectResult), "results");
-    const PhotonConsumer consumer{kConsumer, 0, nullptr, {results}};
+    const PhotonConsumer consumer{kConsumer, 0, nullptr, {{"results", results}}};
 
     map->open(device);
     map->prepare(consumer);

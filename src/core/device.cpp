@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
+#include <stdexcept>
 
 namespace lampyris {
 namespace {
@@ -22,6 +24,41 @@ std::map<std::string, Backend>& backends() {
 }
 
 }  // namespace
+
+Kernel::Kernel(std::string_view file, std::vector<KernelBuffer> found) : file_(file) {
+    std::optional<std::vector<KernelBuffer>> declared = find_kernel_buffers(file);
+    all_known_ = declared.has_value();
+    buffers_ = all_known_ ? std::move(*declared) : std::move(found);
+}
+
+bool Kernel::declares(std::string_view buffer) const {
+    return std::any_of(buffers_.begin(), buffers_.end(), [&](const KernelBuffer& b) { return b.name == buffer; });
+}
+
+std::vector<BufferHandle> Kernel::bind(std::span<const NamedBuffer> given) const {
+    const auto fail = [&](const std::string& what) {
+        std::vector<std::string> names;
+        for (const KernelBuffer& declared : buffers_) names.push_back(declared.name);
+        throw std::logic_error(fmt::format("kernel {}: {}; it declares {}", file_, what, list_of(names)));
+    };
+    std::vector<BufferHandle> bound;
+    for (const KernelBuffer& declared : buffers_) {
+        const auto of_name = [&](const NamedBuffer& buffer) { return buffer.name == declared.name; };
+        const auto found = std::find_if(given.begin(), given.end(), of_name);
+        if (found == given.end() || !found->buffer) fail(fmt::format("it was not given \"{}\"", declared.name));
+        if (std::find_if(found + 1, given.end(), of_name) != given.end())
+            fail(fmt::format("it was given \"{}\" twice", declared.name));
+        if (found->buffer->size() > 0 && found->buffer->size() < declared.element_bytes)
+            fail(fmt::format("\"{}\" has {} bytes, and one element takes {}", declared.name, found->buffer->size(),
+                             declared.element_bytes));
+        if (bound.size() <= declared.binding) bound.resize(declared.binding + 1);
+        bound[declared.binding] = found->buffer;
+    }
+    if (all_known_)
+        for (const NamedBuffer& buffer : given)
+            if (!declares(buffer.name)) fail(fmt::format("it was given \"{}\"", buffer.name));
+    return bound;
+}
 
 size_t Device::build_boxes(const BufferHandle&, uint32_t) {
     throw MachineError(fmt::format("error: {} builds no acceleration structures over boxes", description()));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/error.h"
+#include "core/kernel_registry.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -37,10 +38,29 @@ class DeviceScene {
 };
 using DeviceSceneHandle = std::shared_ptr<DeviceScene>;
 
+// A buffer, and the name that a kernel knows it by (BUFFER_RO, BUFFER_RW).
+struct NamedBuffer {
+    std::string_view name;  // outlives the call: a literal, as a rule
+    BufferHandle buffer;
+};
+
 // A kernel file with a set of effects, ready to run on a device (compiled, for Vulkan).
 class Kernel {
  public:
+    // `found`: the buffers that the device itself knows of; they are taken where the kernel has no C++ build, which knows all.
+    Kernel(std::string_view file, std::vector<KernelBuffer> found = {});
     virtual ~Kernel() = default;
+    const std::string& file() const { return file_; }
+    const std::vector<KernelBuffer>& buffers() const { return buffers_; }
+    bool declares(std::string_view buffer) const;
+    // What is given, in the order of bindings. Throws std::logic_error where a buffer is missing, unknown or given twice, or has no room
+    // for an element.
+    std::vector<BufferHandle> bind(std::span<const NamedBuffer> given) const;
+
+ private:
+    std::string file_;
+    std::vector<KernelBuffer> buffers_;
+    bool all_known_;
 };
 using KernelHandle = std::shared_ptr<Kernel>;
 
@@ -83,15 +103,15 @@ class Device {
     virtual DeviceSceneHandle upload(const Scene& scene) = 0;
 
     // `file` is the kernel's path below its source root ("integrators/path/path.radiance.h"), or several joined by '+', which
-    // make one kernel in that order ("accel/common/collect.consumer.h+accel/linked_list/linked_list.gather.h"); code for effects
-    // outside `effects` may be left out. `trace` says whether the kernel traces rays or reads the scene (needs a DeviceScene to run).
+    // make one kernel in that order ("accel/collect/collect.consumer.h+accel/linked_list/linked_list.gather.h"); code for effects
+    // outside `effects` may be left out. A kernel that traces rays or reads the scene needs a DeviceScene to run.
     virtual KernelHandle compile(std::string_view file, uint64_t effects) = 0;
 
-    // Runs the kernel for the indices [begin, begin + count), split as the device needs; `buffers[i]` is binding i of set 1.
+    // Runs the kernel for the indices [begin, begin + count), split as the device needs, with a buffer for each that it declares.
     // Returns when it is done. `scene` may be null for kernels that use no scene buffer. With a count of 0 it gets the kernel ready for
     // these buffers: some devices compile it anew for buffers above a size. Throws MachineError when the device fails, and
     // UnfinishedError when a kernel reports an unfinished loop: what the buffers hold is then indeterminate.
-    virtual void run(const Kernel& kernel, const DeviceScene* scene, std::span<const BufferHandle> buffers,
+    virtual void run(const Kernel& kernel, const DeviceScene* scene, std::span<const NamedBuffer> buffers,
                      uint32_t begin, uint32_t count) = 0;
 
     // Builds an acceleration structure over the first `count` boxes of a buffer, six floats each (low x, y, z, high x, y, z). It stays

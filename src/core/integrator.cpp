@@ -2,7 +2,7 @@
 
 #include "core/sample_slices.h"
 
-#include <array>
+#include <vector>
 
 namespace lampyris {
 
@@ -23,7 +23,8 @@ void render_samples(RenderSession& session, const char* kernel_file, const void*
     const BufferHandle window = device.create_buffer(sizeof(kernel::FilmWindow), "film window");
     const BufferHandle params = device.create_buffer(std::max<size_t>(parameter_bytes, 4), "parameters");
     if (parameter_bytes) params->upload(parameters, parameter_bytes);
-    const std::array<BufferHandle, 3> buffers{window, params, session.film.buffer()};
+    std::vector<NamedBuffer> buffers{{"window", window}, {"film", session.film.buffer()}};
+    if (parameter_bytes) buffers.push_back({"params", params});
     device.run(*kernel, session.device_scene.get(), buffers, 0, 0);  // so that the session does not time the compiler
     SampleSlices slices(device, session.film);
     while (const uint32_t count = session.next_passes()) {

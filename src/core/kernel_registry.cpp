@@ -16,6 +16,7 @@ struct Build {
     CpuTracerKind tracer;
     uint64_t effects;
     CpuKernelFunction run;
+    CpuKernelDeclaration declare;
 };
 
 // Function-local statics: registrations run before main, in no order.
@@ -30,8 +31,9 @@ std::map<std::string, std::string_view, std::less<>>& texts() {
 
 }  // namespace
 
-CpuKernelVariant::CpuKernelVariant(const char* file, CpuTracerKind tracer, uint64_t effects, CpuKernelFunction run) {
-    builds().insert({file, Build{tracer, effects, run}});
+CpuKernelVariant::CpuKernelVariant(const char* file, CpuTracerKind tracer, uint64_t effects, CpuKernelFunction run,
+                                   CpuKernelDeclaration declare) {
+    builds().insert({file, Build{tracer, effects, run, declare}});
 }
 
 KernelText::KernelText(const char* file, std::string_view text) { texts().insert_or_assign(file, text); }
@@ -72,6 +74,14 @@ CpuKernelFunction find_cpu_kernel(std::string_view file, CpuTracerKind tracer, u
             list_of({parts.begin(), parts.end()})));
     if (!best) throw std::logic_error(fmt::format("no C++ build of kernel {} with effects {:#x}", file, effects));
     return best->run;
+}
+
+std::optional<std::vector<KernelBuffer>> find_kernel_buffers(std::string_view file) {
+    const auto found = builds().find(file);
+    if (found == builds().end()) return std::nullopt;
+    std::vector<KernelBuffer> declared;
+    found->second.declare(declared);
+    return declared;
 }
 
 }  // namespace lampyris

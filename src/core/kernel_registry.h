@@ -2,7 +2,9 @@
 // a plugin is loaded); see cmake/LampyrisKernels.cmake.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,6 +25,24 @@ struct CpuTracer {
     bool (*occluded)(void* scene, const float origin[3], const float direction[3], float t_max) = nullptr;
 };
 
+// A buffer that a kernel declares (BUFFER_RO, BUFFER_RW).
+struct KernelBuffer {
+    uint32_t binding = 0;  // of set 1
+    std::string name;
+    size_t element_bytes = 0;
+};
+
+// The kernel's buffers by binding, and where `declared` is, what is asked of it is noted there instead.
+struct KernelBufferTable {
+    void* const* pointers = nullptr;
+    std::vector<KernelBuffer>* declared = nullptr;
+    void* at(uint32_t binding, const char* name, size_t element_bytes) const {
+        if (!declared) return pointers[binding];
+        declared->push_back({binding, name, element_bytes});
+        return nullptr;
+    }
+};
+
 struct CpuInvocation {
     void* const* scene_buffers;
     void* const* kernel_buffers;
@@ -32,10 +52,12 @@ struct CpuInvocation {
 };
 
 using CpuKernelFunction = void (*)(const CpuInvocation&);
+using CpuKernelDeclaration = void (*)(std::vector<KernelBuffer>& declared);
 
 // A C++ build of a kernel for a set of effects; registers itself.
 struct CpuKernelVariant {
-    CpuKernelVariant(const char* file, CpuTracerKind tracer, uint64_t effects, CpuKernelFunction run);
+    CpuKernelVariant(const char* file, CpuTracerKind tracer, uint64_t effects, CpuKernelFunction run,
+                     CpuKernelDeclaration declare);
 };
 
 // A kernel file's or header's text; registers itself.
@@ -55,5 +77,8 @@ inline constexpr std::string_view kPixelLoop = "core/kernel/pixel_loop.h";
 // The C++ build with the fewest effects that has all of `effects`. Throws std::logic_error for an unknown kernel,
 // InputError for a pair of files of two plugins, which no build has put together.
 CpuKernelFunction find_cpu_kernel(std::string_view file, CpuTracerKind tracer, uint64_t effects);
+
+// The buffers that a kernel's C++ build declares; nothing where there is no such build.
+std::optional<std::vector<KernelBuffer>> find_kernel_buffers(std::string_view file);
 
 }  // namespace lampyris

@@ -3,7 +3,7 @@
 //
 // Scene plugins (shapes, materials, ...) declare a list of ParameterSpec and read the values of a directive through a
 // ParameterReader. Integrators and photon maps declare theirs for the kernel, with PARAMS (core/kernel/params.h);
-// parameter_fields() makes the same specs of that.
+// PARAMETER_FIELDS and specs_of() make the same specs of that.
 #pragma once
 
 #include "core/error.h"

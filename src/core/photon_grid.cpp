@@ -40,7 +40,7 @@ kernel::PhotonGrid make_grid(const PhotonSet& photons, float multiple) {
         grid.resolution[axis] = uint32_t(std::clamp(cells, 0.0f, float(kernel::GRID_MAX_CELLS - 1))) + 1;
     }
     grid.resolution.w = uint32_t(next(state) >> 32);
-    grid.sizes.x = photons.count;
+    grid.count = photons.count;
     return grid;
 }
 

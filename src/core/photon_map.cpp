@@ -103,18 +103,34 @@ void PhotonMap::gather(const PhotonConsumer& consumer, const BufferHandle& queri
     const std::vector<const Kernel*> kernels = gather_kernels(consumer);
     const auto start = Clock::now();
     const double before = kernel_seconds();
-    std::vector<BufferHandle> buffers{queries};
-    for (const BufferHandle& buffer : gather_buffers()) buffers.push_back(buffer);
-    buffers.resize(16);
-    buffers.insert(buffers.end(), consumer.buffers.begin(), consumer.buffers.end());
-    run_gather(kernels, consumer, buffers, first, count);
+    run_gather(kernels, consumer, queries, first, count);
     statistics_.gathering_s += seconds_since(start);
     statistics_.gathering_kernel_s += kernel_seconds() - before;
 }
 
 void PhotonMap::run_gather(std::span<const Kernel* const> kernels, const PhotonConsumer& consumer,
-                           std::span<const BufferHandle> buffers, uint32_t first, uint32_t count) {
-    device().run(*kernels[0], consumer.scene, buffers, first, count);
+                           const BufferHandle& queries, uint32_t first, uint32_t count) {
+    run_gather_kernel(*kernels[0], consumer, queries, first, count);
+}
+
+void PhotonMap::run_gather_kernel(const Kernel& kernel, const PhotonConsumer& consumer, const BufferHandle& queries,
+                                  uint32_t first, uint32_t count) {
+    std::vector<NamedBuffer> others = consumer.buffers;
+    others.push_back({"queries", queries});
+    device().run(kernel, consumer.scene, named_buffers(kernel, others), first, count);
+}
+
+std::vector<NamedBuffer> PhotonMap::named_buffers(const Kernel& kernel, std::span<const NamedBuffer> others) const {
+    std::vector<NamedBuffer> buffers(others.begin(), others.end());
+    for (const KernelBuffer& declared : kernel.buffers()) {
+        const auto is_it = [&](const NamedBuffer& buffer) { return buffer.name == declared.name; };
+        if (std::any_of(others.begin(), others.end(), is_it)) continue;
+        if (declared.name == "photons")
+            buffers.push_back({declared.name, photons_.photons});
+        else if (const auto found = buffers_.find(declared.name); found != buffers_.end())
+            buffers.push_back({declared.name, found->second});
+    }
+    return buffers;
 }
 
 size_t PhotonMap::memory_bytes() const {
@@ -123,15 +139,15 @@ size_t PhotonMap::memory_bytes() const {
     return bytes;
 }
 
-void PhotonMap::run(const std::string& file, std::initializer_list<BufferHandle> buffers, uint32_t count) {
-    const std::vector<BufferHandle> list(buffers);
-    device().run(compiled(file, 0), nullptr, list, 0, count);
+void PhotonMap::run(const std::string& file, uint32_t count, std::initializer_list<NamedBuffer> others) {
+    const Kernel& kernel = compiled(file, 0);
+    device().run(kernel, nullptr, named_buffers(kernel, {others.begin(), others.size()}), 0, count);
 }
 
-void PhotonMap::run_serially(const std::string& file, std::initializer_list<BufferHandle> buffers, uint32_t count) {
-    const std::vector<BufferHandle> list(buffers);
+void PhotonMap::run_serially(const std::string& file, uint32_t count) {
     const Kernel& kernel = compiled(file, 0);
-    for (uint32_t i = 0; i < count; ++i) device().run(kernel, nullptr, list, i, 1);
+    const std::vector<NamedBuffer> buffers = named_buffers(kernel, {});
+    for (uint32_t i = 0; i < count; ++i) device().run(kernel, nullptr, buffers, i, 1);
 }
 
 const BufferHandle& PhotonMap::keep(const std::string& name, size_t bytes) {
@@ -145,7 +161,7 @@ const BufferHandle& PhotonMap::keep(const std::string& name, size_t bytes) {
 
 void PhotonMap::clear(const BufferHandle& buffer, size_t bytes) {
     const uint32_t words = uint32_t((bytes + 15) / 16);
-    run(kClear, {upload("clear", glm::uvec4(words, 0, 0, 0)), buffer}, batch_count(words));
+    run(kClear, batch_count(words), {{"arguments", upload("clear", glm::uvec4(words, 0, 0, 0))}, {"words", buffer}});
 }
 
 void PhotonMap::scan(const BufferHandle& values, uint32_t count) { scan_level(values, count, 0); }
@@ -156,10 +172,10 @@ void PhotonMap::scan_level(const BufferHandle& values, uint32_t count, int level
     const BufferHandle sums = keep(name, size_t(blocks) * 4);
     const BufferHandle arguments = upload(name + " arguments", glm::uvec4(count, blocks, 0, 0));
     if (blocks > 1) {
-        run(kScanSum, {arguments, values, sums}, blocks);
+        run(kScanSum, blocks, {{"arguments", arguments}, {"values", values}, {"sums", sums}});
         scan_level(sums, blocks, level + 1);
     }
-    run(kScanWrite, {arguments, values, sums}, blocks);
+    run(kScanWrite, blocks, {{"arguments", arguments}, {"values", values}, {"sums", sums}});
 }
 
 const std::vector<std::string> PhotonMap::kRadixKernels{"core/kernel/radix_count.kernel.h",
@@ -172,9 +188,9 @@ BufferHandle PhotonMap::radix_sort(const BufferHandle& pairs, const BufferHandle
     const BufferHandle counts = keep("radix counts", size_t(blocks) * kRadixDigits * 4);
     for (uint32_t shift = 0; shift < bits; shift += kRadixBits) {
         const BufferHandle arguments = upload("radix", glm::uvec4(count, blocks, shift, 0));
-        run(kRadixKernels[0], {arguments, from, counts}, blocks);
+        run(kRadixKernels[0], blocks, {{"arguments", arguments}, {"pairs", from}, {"counts", counts}});
         scan(counts, blocks * kRadixDigits);
-        run(kRadixKernels[1], {arguments, from, counts, to}, blocks);
+        run(kRadixKernels[1], blocks, {{"arguments", arguments}, {"pairs", from}, {"starts", counts}, {"sorted", to}});
         std::swap(from, to);
     }
     return from;

@@ -49,10 +49,10 @@ struct PhotonSet {
 
 // Whom the photons that queries find are handed to.
 struct PhotonConsumer {
-    std::string file;                    // "accel/common/collect.consumer.h"; see core/kernel/gather.h
+    std::string file;                    // "accel/collect/collect.consumer.h"; see core/kernel/gather.h
     uint64_t effects = 0;                // of the scene
     const DeviceScene* scene = nullptr;  // where the consumer reads it
-    std::vector<BufferHandle> buffers;   // binding 16 and up
+    std::vector<NamedBuffer> buffers;    // that the consumer declares
 };
 
 struct PhotonMapStatistics {
@@ -111,21 +111,23 @@ class PhotonMap {
     virtual std::string name() const = 0;  // of its folder and its gather file
     virtual void check() const {}          // throws InputError
     virtual void construct(const PhotonSet& photons) = 0;
-    // Bindings 1 to 15 of the gather kernel; 0 is the queries'.
-    virtual std::vector<BufferHandle> gather_buffers() const = 0;
     virtual std::vector<std::string> kernels() const = 0;  // of construction, to compile
     // The files that make gather kernels with the consumer.
     virtual std::vector<std::string> gather_files() const { return {name() + ".gather.h"}; }
     // Runs these kernels: the first over queries, unless a map does it another way.
     virtual void run_gather(std::span<const Kernel* const> kernels, const PhotonConsumer& consumer,
-                            std::span<const BufferHandle> buffers, uint32_t first, uint32_t count);
+                            const BufferHandle& queries, uint32_t first, uint32_t count);
+    void run_gather_kernel(const Kernel& kernel, const PhotonConsumer& consumer, const BufferHandle& queries,
+                           uint32_t first, uint32_t count);
 
     Device& device() const { return *device_; }
-    // Runs a kernel of construction, by its file below the source root.
-    void run(const std::string& file, std::initializer_list<BufferHandle> buffers, uint32_t count);
+    // Runs a kernel of construction, by its file below the source root. Each buffer that it declares is the one of that name among
+    // `others`, or is kept by that name (`photons`: the set's). So it is for gather kernels, which have `queries` and the
+    // consumer's besides.
+    void run(const std::string& file, uint32_t count, std::initializer_list<NamedBuffer> others = {});
     // The same, one invocation after the other.
-    void run_serially(const std::string& file, std::initializer_list<BufferHandle> buffers, uint32_t count);
-    // A buffer of at least this size, kept between builds. What it holds is indeterminate.
+    void run_serially(const std::string& file, uint32_t count);
+    // A buffer of at least this size, kept between builds by the name that kernels know it by. What it holds is indeterminate.
     const BufferHandle& keep(const std::string& name, size_t bytes);
     const BufferHandle& kept(const std::string& name) const { return buffers_.at(name); }
     void clear(const BufferHandle& buffer, size_t bytes);  // to zero, on the device
@@ -150,6 +152,7 @@ class PhotonMap {
 
  private:
     void scan_level(const BufferHandle& values, uint32_t count, int level);
+    std::vector<NamedBuffer> named_buffers(const Kernel& kernel, std::span<const NamedBuffer> others) const;
     std::vector<const Kernel*> gather_kernels(const PhotonConsumer& consumer);
     const Kernel& compiled(const std::string& file, uint64_t effects);
     double kernel_seconds() const;

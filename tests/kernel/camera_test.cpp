@@ -21,7 +21,7 @@ std::vector<vec4> run(Device& device, const Scene& scene, glm::uvec4 what, const
     const BufferHandle out = device.create_buffer(count * results * sizeof(vec4), "results");
     const auto kernel = device.compile("kernel/camera_probe.kernel.h", kernel::EFFECT_DEPTH_OF_FIELD);
     const auto device_scene = device.upload(scene);
-    const std::array<BufferHandle, 3> buffers{what_buffer, in, out};
+    const NamedBuffer buffers[] = {{"what", what_buffer}, {"inputs", in}, {"results", out}};
     device.run(*kernel, device_scene.get(), buffers, 0, count);
     return download<vec4>(out, count * results);
 }

@@ -75,7 +75,7 @@ TEST(Device, RunsEveryIndexOfARangeOnce) {
         const auto counter = device->create_buffer(4, "counter");
         in->upload(inputs.data(), kSize * 4);
         const auto kernel = device->compile("kernel/device_square.kernel.h", 0);
-        const BufferHandle buffers[] = {in, out, counter};
+        const NamedBuffer buffers[] = {{"inputs", in}, {"results", out}, {"counters", counter}};
         uint32_t expected = 0;
         for (const auto& [begin, count] :
              {std::pair{0u, 1u}, {17u, 1000u}, {1017u, 250'000u}, {299'999u, 1u}, {5u, 0u}}) {
@@ -97,6 +97,42 @@ TEST(Device, RunsEveryIndexOfARangeOnce) {
     }
 }
 
+TEST(Device, ChecksBuffersByName) {
+    for (const std::string& backend : usable_backends()) {
+        SCOPED_TRACE(backend);
+        const auto device = create_device(backend);
+        const float inputs[4] = {2, 3, 4, 5};
+        const auto in = device->create_buffer(16, "a"), out = device->create_buffer(16, "b"),
+                   counter = device->create_buffer(4, "c"), small = device->create_buffer(2, "d");
+        in->upload(inputs, 16);
+        const auto kernel = device->compile("kernel/device_square.kernel.h", 0);
+        const auto message = [&](std::vector<NamedBuffer> given) -> std::string {
+            try {
+                device->run(*kernel, nullptr, given, 0, 4);
+            } catch (const std::logic_error& error) {
+                return error.what();
+            }
+            return "";
+        };
+        // The order does not matter.
+        EXPECT_EQ(message({{"results", out}, {"counters", counter}, {"inputs", in}}), "");
+        float results[4];
+        out->download(results, 16);
+        EXPECT_EQ(results[2], 18.0f);
+        const std::string end = "; it declares inputs, results, counters";
+        const std::string start = "kernel kernel/device_square.kernel.h: ";
+        EXPECT_EQ(message({{"inputs", in}, {"results", out}}), start + "it was not given \"counters\"" + end);
+        EXPECT_EQ(message({{"inputs", in}, {"results", nullptr}, {"counters", counter}}),
+                  start + "it was not given \"results\"" + end);
+        EXPECT_EQ(message({{"inputs", in}, {"results", out}, {"counters", counter}, {"result", out}}),
+                  start + "it was given \"result\"" + end);
+        EXPECT_EQ(message({{"inputs", in}, {"results", out}, {"counters", counter}, {"inputs", out}}),
+                  start + "it was given \"inputs\" twice" + end);
+        EXPECT_EQ(message({{"inputs", in}, {"results", out}, {"counters", small}}),
+                  start + "\"counters\" has 2 bytes, and one element takes 4" + end);
+    }
+}
+
 TEST(Device, UnfinishedLoopIsAnErrorAndTheDeviceLivesOn) {
     for (const std::string& backend : usable_backends()) {
         SCOPED_TRACE(backend);
@@ -105,7 +141,7 @@ TEST(Device, UnfinishedLoopIsAnErrorAndTheDeviceLivesOn) {
         std::vector<uint32_t> data(100, 10u);
         limits->upload(data.data(), 400);
         const auto kernel = device->compile("kernel/device_loop.kernel.h", 0);
-        const BufferHandle buffers[] = {limits, sums};
+        const NamedBuffer buffers[] = {{"limits", limits}, {"sums", sums}};
         EXPECT_NO_THROW(device->run(*kernel, nullptr, buffers, 0, 100));
         data[57] = 1001;
         limits->upload(data.data(), 400);
@@ -165,7 +201,7 @@ class ShaderCacheTest : public testing::Test {
         const auto kernel = device->compile("kernel/device_effects.kernel.h", effects);
         spirv_bytes_ = device->statistics().spirv_bytes.at("kernel/device_effects.kernel.h");
         const auto out = device->create_buffer(64, "results");
-        const BufferHandle buffers[] = {out};
+        const NamedBuffer buffers[] = {{"results", out}};
         device->run(*kernel, nullptr, buffers, 0, 16);
         float values[16];
         out->download(values, 64);

@@ -26,11 +26,14 @@ Answers ask(Device& device, const Scene& scene, uvec4 what, const std::vector<uv
     const DeviceSceneHandle on_device = device.upload(scene);
     const KernelHandle kernel = device.compile("kernel/distribution_probe.kernel.h", 0);
     const size_t n = inputs.size();
-    const std::array<BufferHandle, 4> buffers{
-        upload(device, std::vector{what}, "probe"), upload(device, inputs, "inputs"),
-        device.create_buffer(n * sizeof(uvec4), "results"), device.create_buffer(n * sizeof(vec4), "places")};
+    const BufferHandle results = device.create_buffer(n * sizeof(uvec4), "results");
+    const BufferHandle places = device.create_buffer(n * sizeof(vec4), "places");
+    const NamedBuffer buffers[] = {{"probe", upload(device, std::vector{what}, "probe")},
+                                   {"inputs", upload(device, inputs, "inputs")},
+                                   {"results", results},
+                                   {"places", places}};
     device.run(*kernel, on_device.get(), buffers, 0, uint32_t(n));
-    return {download<uvec4>(buffers[2], n), download<vec4>(buffers[3], n)};
+    return {download<uvec4>(results, n), download<vec4>(places, n)};
 }
 
 // Weights over twelve powers of ten, some of them 0.

@@ -87,7 +87,8 @@ TEST(Emission, PhotonsBringTheLightThatLightsSend) {
             for (uint32_t how : {0u, 1u}) {
                 const Probe probe{
                     {how, 17 + how, 0, 0}, {0, 0, 0, 0.8f}, glm::vec4(glm::normalize(glm::vec3(0.2f, -0.1f, 1.0f)), 0)};
-                const std::array<BufferHandle, 2> buffers{upload(*device, std::vector{probe}, "probe"), out};
+                const NamedBuffer buffers[] = {{"probe", upload(*device, std::vector{probe}, "probe")},
+                                               {"results", out}};
                 device->run(*kernel, scene.get(), buffers, 0, kSamples);
                 for (const glm::vec4& r : download<glm::vec4>(out, kSamples))
                     for (int channel = 0; channel < 3; ++channel) flux[how][size_t(channel)].add(double(r[channel]));

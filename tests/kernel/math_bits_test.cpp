@@ -49,7 +49,7 @@ std::vector<glm::vec4> evaluate(Device& device, const std::vector<glm::vec4>& in
     const uint32_t words[4] = {function, 0, 0, 0};
     choice->upload(words, sizeof words);
     const auto kernel = device.compile("kernel/math_bits.kernel.h", 0);
-    const BufferHandle buffers[] = {in, choice, out};
+    const NamedBuffer buffers[] = {{"inputs", in}, {"choices", choice}, {"results", out}};
     device.run(*kernel, nullptr, buffers, 0, uint32_t(inputs.size()));
     std::vector<glm::vec4> results(inputs.size());
     out->download(results.data(), out->size());

@@ -38,7 +38,7 @@ std::vector<CollectResult> gather_nearest(Device& device, PhotonMap& map, const 
     const glm::uvec4 record(photons, 0, 0, 0);
     wanted->upload(&record, sizeof record);
     map.build(set);
-    map.gather({kNearest, 0, nullptr, {results, wanted}}, set.queries, 0, set.query_count);
+    map.gather({kNearest, 0, nullptr, {{"results", results}, {"wanted", wanted}}}, set.queries, 0, set.query_count);
     return download<CollectResult>(results, set.query_count);
 }
 

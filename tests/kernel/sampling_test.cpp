@@ -104,7 +104,7 @@ class SamplingProber {
         probe.a = c.a;
         probe.direction = c.direction;
         BufferHandle buffer = upload(*device_, points, "points");
-        std::vector<BufferHandle> buffers = {upload(*device_, std::vector{probe}, "probes"), buffer};
+        const NamedBuffer buffers[] = {{"probes", upload(*device_, std::vector{probe}, "probes")}, {"points", buffer}};
         device_->run(*kernel_, nullptr, buffers, 0, uint32_t(points.size()));
         return download<vec4>(buffer, points.size());
     }

@@ -157,7 +157,7 @@ std::vector<uvec4> trace(const Backend& backend, const Scene& scene, const std::
     const auto in = device->create_buffer(rays.size() * sizeof(Ray), "rays"),
                out = device->create_buffer(rays.size() * sizeof(uvec4), "hits");
     in->upload(rays.data(), in->size());
-    const BufferHandle buffers[] = {in, out};
+    const NamedBuffer buffers[] = {{"rays", in}, {"hits", out}};
     device->run(*kernel, on_device.get(), buffers, 0, uint32_t(rays.size()));
     std::vector<uvec4> hits(rays.size());
     out->download(hits.data(), out->size());

@@ -80,7 +80,7 @@ TEST(Validation, KernelsRunWithoutAMessage) {
                 data.emplace_back(0.0f, 0.0f, 1.0f, 0.0f);
             }
             rays->upload(data.data(), rays->size());
-            const BufferHandle buffers[] = {rays, hits};
+            const NamedBuffer buffers[] = {{"rays", rays}, {"hits", hits}};
             device->run(*kernel, on_device.get(), buffers, 0, 1000);
             device->run(*kernel, on_device.get(), buffers, 0, 500);
             std::vector<glm::uvec4> found(1000);
@@ -90,7 +90,7 @@ TEST(Validation, KernelsRunWithoutAMessage) {
             // A second kernel, without a scene.
             const auto square = device->compile("kernel/device_square.kernel.h", 0);
             const auto counter = device->create_buffer(4, "counter");
-            const BufferHandle more[] = {rays, hits, counter};
+            const NamedBuffer more[] = {{"inputs", rays}, {"results", hits}, {"counters", counter}};
             device->run(*square, nullptr, more, 3, 100);
             // Structures over boxes that a kernel wrote: built, walked, and built again, larger and smaller.
             if (!device->offers(DeviceFeature::kBoxes)) return;

@@ -162,7 +162,7 @@ TEST(LargeBuffersOfDevices, ReachTheLastWord) {
     const float values[] = {3.0f, 5.0f};
     in->upload(values, 8, size_t(kWords - 2) * 4);
     const auto kernel = device->compile("kernel/device_square.kernel.h", 0);
-    const BufferHandle buffers[] = {in, out, counter};
+    const NamedBuffer buffers[] = {{"inputs", in}, {"results", out}, {"counters", counter}};
     device->run(*kernel, nullptr, buffers, kWords - 2, 2);
     float results[3];
     out->download(results, 12, size_t(kWords - 3) * 4);

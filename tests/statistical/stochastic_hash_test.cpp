@@ -17,7 +17,7 @@ namespace {
 using namespace test;
 
 TEST(StochasticHash, TheoryAgreesWithItself) {
-    // The table of photon-mapping.md, section 3.
+    // Known values, and the closed form for one slot.
     EXPECT_NEAR(kappa(4), 4.36, 0.01);
     EXPECT_NEAR(kappa(2), 0.770, 1e-3);
     EXPECT_NEAR(kappa(1.5), 0.340, 1e-3);

@@ -63,8 +63,9 @@ class BsdfProber {
         }
         size_t count = per_probe * probes.size();
         BufferHandle results = device_->create_buffer(count * results_each * sizeof(vec4), "results");
-        std::vector<BufferHandle> buffers = {upload(*device_, probes, "probes"), upload(*device_, inputs, "inputs"),
-                                             results};
+        const NamedBuffer buffers[] = {{"probes", upload(*device_, probes, "probes")},
+                                       {"inputs", upload(*device_, inputs, "inputs")},
+                                       {"results", results}};
         device_->run(*kernel_, nullptr, buffers, 0, uint(count));
         return download<vec4>(results, count * results_each);
     }

@@ -1,4 +1,4 @@
-// How noisy stochastic hashing is: what theory says (photon-mapping.md, section 3), and a measurement.
+// How noisy stochastic hashing is: what theory says (photons are Poisson on a plane, the grid is shifted at random), and a measurement.
 #pragma once
 
 #include "core/device.h"

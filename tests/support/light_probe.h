@@ -57,7 +57,7 @@ class LightAsker {
         const BufferHandle what = upload(device_, std::vector{probe}, "probe");
         const BufferHandle in = upload(device_, inputs, "inputs");
         const BufferHandle out = device_.create_buffer(size_t(count) * 2 * sizeof(glm::vec4), "results");
-        const std::array<BufferHandle, 3> buffers{what, in, out};
+        const NamedBuffer buffers[] = {{"probe", what}, {"inputs", in}, {"results", out}};
         device_.run(*kernel_, scene_.get(), buffers, 0, count);
         return download<glm::vec4>(out, size_t(count) * 2);
     }

@@ -36,7 +36,7 @@ class LimitedDevice final : public Device {
             if (file.ends_with(sampling)) sampling_[kernel.get()] = std::string(file);
         return kernel;
     }
-    void run(const Kernel& kernel, const DeviceScene* scene, std::span<const BufferHandle> buffers, uint32_t begin,
+    void run(const Kernel& kernel, const DeviceScene* scene, std::span<const NamedBuffer> buffers, uint32_t begin,
              uint32_t count) override {
         inner_->run(kernel, scene, buffers, begin, count);
         const auto found = sampling_.find(&kernel);

@@ -123,7 +123,7 @@ bool can_run(const Device& device, const PhotonMap& map) {
 
 std::vector<CollectResult> collect(Device& device, PhotonMap& map, const PhotonSet& set) {
     const BufferHandle results = device.create_buffer(size_t(set.query_count) * sizeof(CollectResult), "results");
-    const PhotonConsumer consumer{kCollect, 0, nullptr, {results}};
+    const PhotonConsumer consumer{kCollect, 0, nullptr, {{"results", results}}};
     map.build(set);
     map.gather(consumer, set.queries, 0, set.query_count);
     return download<CollectResult>(results, set.query_count);

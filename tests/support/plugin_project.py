@@ -43,9 +43,6 @@ class Every : public lampyris::PhotonMap {
     void construct(const lampyris::PhotonSet& photons) override {
         upload("arguments", glm::uvec4(photons.count, 0, 0, 0));
     }
-    std::vector<lampyris::BufferHandle> gather_buffers() const override {
-        return {kept("arguments"), photons_.photons};
-    }
 };
 
 REGISTER_PHOTON_MAP(Every, EVERY_PARAMS, "every", "Tests every photon.")

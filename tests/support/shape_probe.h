@@ -40,7 +40,7 @@ inline std::vector<ShapeAnswer> ask_shapes(Device& device, const DeviceSceneHand
     const KernelHandle kernel =
         device.compile("kernel/shape_probe.kernel.h", kernel::EFFECT_QUADRICS | kernel::EFFECT_BILINEAR |
                                                           kernel::EFFECT_SMOOTH_NORMALS | kernel::EFFECT_BUMP);
-    const std::array<BufferHandle, 2> buffers{in, out};
+    const NamedBuffer buffers[] = {{"rays", in}, {"results", out}};
     device.run(*kernel, scene.get(), buffers, 0, uint32_t(rays.size()));
     const auto v = download<glm::vec4>(out, rays.size() * kResults);
     std::vector<ShapeAnswer> answers(rays.size());

@@ -93,7 +93,7 @@ struct TextureScene {
         const BufferHandle in = device->create_buffer(probes.size() * sizeof(Probe), "probes");
         const BufferHandle out = device->create_buffer(probes.size() * sizeof(Answer), "answers");
         in->upload(probes.data(), probes.size() * sizeof(Probe));
-        const BufferHandle buffers[] = {in, out};
+        const NamedBuffer buffers[] = {{"probes", in}, {"answers", out}};
         device->run(*kernel, uploaded.get(), buffers, 0, uint32_t(probes.size()));
         std::vector<Answer> answers(probes.size());
         out->download(answers.data(), answers.size() * sizeof(Answer));

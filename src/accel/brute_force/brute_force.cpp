@@ -14,7 +14,6 @@ class BruteForce : public PhotonMap {
  protected:
     std::vector<std::string> kernels() const override { return {}; }
     void construct(const PhotonSet& photons) override { upload("arguments", glm::uvec4(photons.count, 0, 0, 0)); }
-    std::vector<BufferHandle> gather_buffers() const override { return {kept("arguments"), photons_.photons}; }
 };
 
 REGISTER_PHOTON_MAP(BruteForce, BRUTE_FORCE_PARAMS, "brute_force",

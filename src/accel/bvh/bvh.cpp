@@ -11,7 +11,7 @@ namespace {
 
 struct TreeRecord {  // of bvh.layout.h
     glm::vec4 origin, radius;
-    glm::uvec4 sizes;
+    uint32_t count, leaf_photons, level_count, built_level;
     glm::uvec4 levels[16];
 };
 
@@ -48,12 +48,12 @@ class Bvh : public PhotonMap {
     // Where each level's boxes lie. Returns their number.
     uint32_t lay_out(TreeRecord& record) const {
         uint32_t boxes = 0, level = 0;
-        for (uint32_t nodes = (record.sizes.x + params.leaf - 1) / params.leaf;; nodes = (nodes + 3) / 4) {
+        for (uint32_t nodes = (record.count + params.leaf - 1) / params.leaf;; nodes = (nodes + 3) / 4) {
             record.levels[level++] = {boxes, nodes, 0, 0};
             boxes += nodes;
             if (nodes <= 1) break;
         }
-        record.sizes.z = level;
+        record.level_count = level;
         return boxes;
     }
 
@@ -61,33 +61,33 @@ class Bvh : public PhotonMap {
         const uint32_t count = photons.count;
         TreeRecord record{};
         record.radius.x = photons.radius;
-        record.sizes = {count, params.leaf, 0, 0};
+        record.count = count;
+        record.leaf_photons = params.leaf;
         const glm::vec3 extent = photons.high - photons.low;
         const float largest = std::max({extent.x, extent.y, extent.z, 0.0f});
         record.origin = glm::vec4(photons.low, largest > 0 && std::isfinite(largest) ? 1048576.0f / largest : 0.0f);
         const uint32_t boxes_count = lay_out(record);
-        const BufferHandle tree = upload("tree", record);
+        upload("tree", record);
         const BufferHandle pairs = keep("pairs", size_t(count) * 8), other = keep("pairs 2", size_t(count) * 8);
-        const BufferHandle places = keep("places", size_t(count) * 16), fluxes = keep("fluxes", size_t(count) * 16);
+        keep("places", size_t(count) * 16);
+        keep("fluxes", size_t(count) * 16);
         const BufferHandle boxes = keep("boxes", ray_query() ? size_t(count) * 24 : size_t(boxes_count) * 32);
-        run(kCode, {tree, photons.photons, pairs}, count);
+        run(kCode, count);
         const BufferHandle sorted = radix_sort(pairs, other, count, 32);
         const BufferHandle order = sorted == pairs ? other : pairs;
-        run(kOrder, {tree, photons.photons, sorted, order, places, fluxes}, batch_count(count));
+        run(kOrder, batch_count(count), {{"pairs", sorted}, {"order", order}});
         if (ray_query()) {
             // In order, photons of neighbouring boxes lie together; and not every driver (Mesa 25's lavapipe) sorts boxes.
-            run(kBoxes, {tree, places, boxes}, count);
+            run(kBoxes, count);
             build_boxes(boxes, count);
             return;
         }
-        run(kLeaves, {tree, places, boxes}, record.levels[0].y);
-        for (uint32_t level = 1; level < record.sizes.z; ++level) {
-            record.sizes.w = level;
-            run(kLevel, {upload("tree", record), boxes}, record.levels[level].y);
+        run(kLeaves, record.levels[0].y);
+        for (uint32_t level = 1; level < record.level_count; ++level) {
+            record.built_level = level;
+            upload("tree", record);
+            run(kLevel, record.levels[level].y);
         }
-    }
-    std::vector<BufferHandle> gather_buffers() const override {
-        return {kept("tree"), kept("boxes"), kept("places"), kept("fluxes")};
     }
 };
 

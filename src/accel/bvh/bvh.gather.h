@@ -40,18 +40,19 @@ KERNEL(bvh) {
     vec4 q = queries[index];
     if (q.w < 0.0f) return;
     Gathered gathered = gather_begin(index);
-    uvec4 sizes = tree[0].sizes;
-    uint root = sizes.z - 1u;
+    uint count = tree[0].count;
+    uint leaf_photons = tree[0].leaf_photons;
+    uint root = tree[0].level_count - 1u;
     uint level = root;
     uint visit = 0u;  // node ^ (first >> 2 level)
     float limit = max(q.w * q.w, SMALLEST_RADIUS_SQUARED);
     uint first = 0u;
 #ifdef GATHER_SHRINKS
-    if (sizes.x > 0u) first = leaf_near(vec3(q), root);
+    if (count > 0u) first = leaf_near(vec3(q), root);
 #endif
-    bool finished = sizes.x == 0u;
+    bool finished = count == 0u;
     // Every node once, at most.
-    for (uint steps = 0u; !finished && steps <= 2u * sizes.x + 64u; ++steps) {
+    for (uint steps = 0u; !finished && steps <= 2u * count + 64u; ++steps) {
         uvec4 of_level = tree[0].levels[level];
         uint node = visit ^ (first >> (2u * level));
         if (node < of_level.y && box_distance_squared(boxes[of_level.x + node], vec3(q)) <= limit) {
@@ -60,8 +61,8 @@ KERNEL(bvh) {
                 visit = 4u * visit;
                 continue;
             }
-            uint end = min((node + 1u) * sizes.y, sizes.x);
-            uint i = node * sizes.y;
+            uint end = min((node + 1u) * leaf_photons, count);
+            uint i = node * leaf_photons;
             for (; i < end; ++i) {
                 uvec4 place = places[i];
                 float d2;

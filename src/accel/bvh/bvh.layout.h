@@ -13,9 +13,12 @@ struct TreeBox {
 };
 
 struct TreeRecord {
-    vec4 origin;                // of the Morton grid; w: its cells per unit, the same along each axis
-    vec4 radius;                // x: of the largest query that boxes about photons are made for
-    uvec4 sizes;                // x: photons, y: photons of a leaf, z: levels, w: the level being built
+    vec4 origin;        // of the Morton grid; w: its cells per unit, the same along each axis
+    vec4 radius;        // x: of the largest query that boxes about photons are made for
+    uint count;         // of photons
+    uint leaf_photons;  // of a full leaf
+    uint level_count;
+    uint built_level;           // the level being built
     uvec4 levels[TREE_LEVELS];  // x: first box, y: number of boxes
 };
 

@@ -11,7 +11,7 @@ BUFFER_RW(2, float, boxes)
 CONST float BOX_MARGIN = 2.3841858e-7f;  // 2^-22
 
 KERNEL(bvh_boxes) {
-    if (index >= tree[0].sizes.x) return;
+    if (index >= tree[0].count) return;
     vec3 p = place_position(places[index]);
     vec3 reach = vec3(range_reach(tree[0].radius.x));
     vec3 side = reach + (abs(p) + reach) * BOX_MARGIN;

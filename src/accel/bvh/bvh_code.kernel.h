@@ -6,6 +6,6 @@ BUFFER_RO(1, PhotonRecord, photons)
 BUFFER_RW(2, uvec2, pairs)
 
 KERNEL(bvh_code) {
-    if (index < tree[0].sizes.x)
+    if (index < tree[0].count)
         pairs[index] = uvec2(morton_code(tree[0], place_position(photons[index].place), 10u), index);
 }

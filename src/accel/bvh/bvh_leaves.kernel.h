@@ -6,9 +6,8 @@ BUFFER_RO(1, uvec4, places)
 BUFFER_RW(2, TreeBox, boxes)
 
 KERNEL(bvh_leaves) {
-    uvec4 sizes = tree[0].sizes;
-    uint begin = index * sizes.y;
-    uint end = min(begin + sizes.y, sizes.x);
+    uint begin = index * tree[0].leaf_photons;
+    uint end = min(begin + tree[0].leaf_photons, tree[0].count);
     vec3 low = vec3(3e38f);
     vec3 high = vec3(-3e38f);
     for (uint i = begin; i < end; ++i) {

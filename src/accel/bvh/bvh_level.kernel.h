@@ -5,7 +5,7 @@ BUFFER_RO(0, TreeRecord, tree)
 BUFFER_RW(1, TreeBox, boxes)
 
 KERNEL(bvh_level) {
-    uint level = tree[0].sizes.w;
+    uint level = tree[0].built_level;
     uvec4 below = tree[0].levels[level - 1u];
     vec3 low = vec3(3e38f);
     vec3 high = vec3(-3e38f);

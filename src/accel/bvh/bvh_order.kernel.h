@@ -57,7 +57,7 @@ FN void bvh_long_run(uint begin, uint end) {
 }
 
 KERNEL(bvh_order) {
-    uint count = tree[0].sizes.x;
+    uint count = tree[0].count;
     // What the fourth invocation from here will read: this one's own would come too late.
     for (uint k = 0u; k < BATCH; ++k) {
         uint i = batch_item(index + 4u, k);

@@ -13,7 +13,7 @@ KERNEL(bvh_ray_query) {
     vec4 q = queries[index];
     if (q.w < 0.0f) return;
     Gathered gathered = gather_begin(index);
-    uint count = tree[0].sizes.x;
+    uint count = tree[0].count;
     // Where the boxes are too small for this query, every photon is tested.
     bool large = q.w > tree[0].radius.x;
     // No component of the direction is 0, by whose inverse drivers multiply. In floats the ray ends where it starts.

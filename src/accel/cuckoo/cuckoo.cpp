@@ -10,6 +10,7 @@ namespace {
 struct CuckooRecord {  // of cuckoo.layout.h
     kernel::PhotonGrid grid;
     glm::uvec4 seeds;
+    uint32_t cells, stash, unused[2];
 };
 
 class Cuckoo : public PhotonMap {
@@ -32,47 +33,46 @@ class Cuckoo : public PhotonMap {
 
     void construct(const PhotonSet& photons) override {
         const uint32_t count = photons.count;
-        CuckooRecord record{make_grid(photons, params.cell_size), {}};
-        record.grid.sizes.w = params.stash;
+        CuckooRecord record{};
+        record.grid = make_grid(photons, params.cell_size);
+        record.stash = params.stash;
         const BufferHandle pairs = keep("pairs", size_t(count) * 8), other = keep("pairs 2", size_t(count) * 8);
-        const BufferHandle places = keep("places", size_t(count) * 16), fluxes = keep("fluxes", size_t(count) * 16);
-        const BufferHandle cells = keep("cells", (size_t(count) + 1) * 8);
+        keep("places", size_t(count) * 16);
+        keep("fluxes", size_t(count) * 16);
+        keep("cells", (size_t(count) + 1) * 8);
         const BufferHandle runs = keep("runs", (size_t(count) + 1) * 4);
-        BufferHandle arguments = upload("cuckoo", record);
-        run(kCode, {arguments, photons.photons, pairs}, count);
+        upload("cuckoo", record);
+        run(kCode, count);
         const BufferHandle sorted = radix_sort(pairs, other, count, 32);
         const BufferHandle order = sorted == pairs ? other : pairs;
         const uint32_t none = 0;
         runs->upload(&none, 4, size_t(count) * 4);
-        run(kOrder, {arguments, photons.photons, sorted, order, runs, places, fluxes}, batch_count(count));
+        run(kOrder, batch_count(count), {{"pairs", sorted}, {"order", order}});
         scan(runs, count + 1);
-        run(kList, {arguments, sorted, runs, cells}, batch_count(count + 1));
-        runs->download(&record.grid.sizes.z, 4, size_t(count) * 4);
-        cells_per_photon_ = double(record.grid.sizes.z) / std::max(1.0, double(count));
+        run(kList, batch_count(count + 1), {{"pairs", sorted}});
+        runs->download(&record.cells, 4, size_t(count) * 4);
+        cells_per_photon_ = double(record.cells) / std::max(1.0, double(count));
         fill_table(record);
     }
 
     // With new hash functions until all cells but the stash's have an entry. The table grows a little with each try, so that it ends.
     void fill_table(CuckooRecord& record) {
-        double entries = std::ceil(record.grid.sizes.z * double(params.table_size)) + 4;
+        double entries = std::ceil(record.cells * double(params.table_size)) + 4;
         for (uint32_t attempt = 0;; ++attempt, entries *= 1.1) {
-            record.grid.sizes.y = uint32_t(entries);
+            record.grid.entries = uint32_t(entries);
             for (int way = 0; way < 4; ++way)
                 record.seeds[way] = record.grid.resolution.w + 0x9e3779b9u * (4 * attempt + uint32_t(way) + 1);
-            const BufferHandle arguments = upload("cuckoo", record);
-            const BufferHandle table = keep("table", size_t(record.grid.sizes.y) * 4);
+            upload("cuckoo", record);
+            const BufferHandle table = keep("table", size_t(record.grid.entries) * 4);
             const BufferHandle stash = keep("stash", (size_t(params.stash) + 1) * 4);
-            clear(table, size_t(record.grid.sizes.y) * 4);
+            clear(table, size_t(record.grid.entries) * 4);
             const uint32_t none = 0;
             stash->upload(&none, 4);
-            run(kInsert, {arguments, kept("cells"), table, stash}, record.grid.sizes.z);
+            run(kInsert, record.cells);
             uint32_t stashed = 0;
             stash->download(&stashed, 4);
             if (stashed <= params.stash) return;
         }
-    }
-    std::vector<BufferHandle> gather_buffers() const override {
-        return {kept("cuckoo"), kept("table"), kept("stash"), kept("cells"), kept("places"), kept("fluxes")};
     }
 
  private:

@@ -17,7 +17,7 @@ FN uint cuckoo_find(IN(CuckooRecord) c, uint key) {
         if (item == 0u) return 0u;
         if (cells[item - 1u].x == key) return item;
     }
-    uint stashed = min(stash[0], c.grid.sizes.w);
+    uint stashed = min(stash[0], c.stash);
     for (uint i = 0u; i < stashed; ++i)
         if (cells[stash[1u + i] - 1u].x == key) return stash[1u + i];
     return 0u;

@@ -6,16 +6,19 @@
 
 CONST uint CUCKOO_WAYS = 4u;
 
-// grid.sizes: photons, entries, cells (runs), most that may be stashed.
 struct CuckooRecord {
     PhotonGrid grid;
-    uvec4 seeds;
+    uvec4 seeds;  // of each way
+    uint cells;   // that hold photons: runs
+    uint stash;   // most cells that may be stashed
+    uint unused0;
+    uint unused1;
 };
 
 FN uint cuckoo_key(IN(PhotonGrid) g, uvec3 cell) { return cell_hash(row_hash(cell.y, cell.z, g.resolution.w), cell.x); }
 FN uint cuckoo_entry(IN(CuckooRecord) c, uint key, uint way) {
     uint seed = way == 0u ? c.seeds.x : (way == 1u ? c.seeds.y : (way == 2u ? c.seeds.z : c.seeds.w));
-    return hashed_entry(hash32(key ^ seed), c.grid.sizes.y);
+    return hashed_entry(hash32(key ^ seed), c.grid.entries);
 }
 
 #endif

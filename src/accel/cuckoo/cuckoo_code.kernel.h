@@ -7,6 +7,5 @@ BUFFER_RW(2, uvec2, pairs)
 
 KERNEL(cuckoo_code) {
     PhotonGrid g = cuckoo[0].grid;
-    if (index < g.sizes.x)
-        pairs[index] = uvec2(cuckoo_key(g, grid_cell(g, place_position(photons[index].place))), index);
+    if (index < g.count) pairs[index] = uvec2(cuckoo_key(g, grid_cell(g, place_position(photons[index].place))), index);
 }

@@ -11,7 +11,7 @@ CONST uint MOST_MOVES = 200u;
 
 KERNEL(cuckoo_insert) {
     CuckooRecord c = cuckoo[0];
-    if (index >= c.grid.sizes.z) return;
+    if (index >= c.cells) return;
     uint item = index + 1u;
     uint entry = cuckoo_entry(c, cells[index].x, 0u);
     for (uint move = 0u; move < MOST_MOVES; ++move) {
@@ -23,5 +23,5 @@ KERNEL(cuckoo_insert) {
         entry = cuckoo_entry(c, key, (way + 1u) % CUCKOO_WAYS);
     }
     uint place = ATOMIC_ADD_U32(stash[0], 1u);
-    if (place < c.grid.sizes.w) stash[1u + place] = item;
+    if (place < c.stash) stash[1u + place] = item;
 }

@@ -7,7 +7,7 @@ BUFFER_RO(2, uint, runs)  // how many began before
 BUFFER_RW(3, uvec2, cells)
 
 KERNEL(cuckoo_list) {
-    uint count = cuckoo[0].grid.sizes.x;
+    uint count = cuckoo[0].grid.count;
     for (uint k = 0u; k < BATCH; ++k) {
         uint i = batch_item(index, k);
         if (i > count) continue;

@@ -38,7 +38,7 @@ FN void cuckoo_long_run(uint begin, uint end) {
 }
 
 KERNEL(cuckoo_order) {
-    uint count = cuckoo[0].grid.sizes.x;
+    uint count = cuckoo[0].grid.count;
     // What the invocation after the next will read: this one's own would come too late.
     for (uint k = 0u; k < BATCH; ++k) {
         uint i = batch_item(index + 2u, k);

@@ -26,20 +26,17 @@ class HashList : public PhotonMap {
         const size_t count = photons.count;
         const uint32_t chunks = (photons.count + kChunk - 1) / kChunk;
         kernel::PhotonGrid grid = make_grid(photons, params.cell_size);
-        grid.sizes.y = table_entries(photons, params.table_size);
-        grid.sizes.z = keyed;
-        const BufferHandle record = upload("grid", grid);
-        const BufferHandle heads = keep("heads", size_t(grid.sizes.y) * 4);
-        const BufferHandle links = keep("links", keyed ? count * 8 : 8);
-        const BufferHandle nodes = keep("nodes", count * 16);
-        clear(heads, size_t(grid.sizes.y) * 4);
-        run_serially(kInsert, {record, photons.photons, heads, links, nodes}, chunks);
+        grid.entries = table_entries(photons, params.table_size);
+        grid.option = keyed;
+        upload("grid", grid);
+        const BufferHandle heads = keep("heads", size_t(grid.entries) * 4);
+        keep("links", keyed ? count * 8 : 8);
+        keep("nodes", count * 16);
+        clear(heads, size_t(grid.entries) * 4);
+        run_serially(kInsert, chunks);
         if (!keyed) return;
-        run_serially(kOrder, {record, heads, links}, (batch_count(grid.sizes.y) + kSpan - 1) / kSpan);
-        run_serially(kPlace, {record, photons.photons, links, nodes}, chunks);
-    }
-    std::vector<BufferHandle> gather_buffers() const override {
-        return {kept("grid"), kept("heads"), kept("nodes"), photons_.photons};
+        run_serially(kOrder, (batch_count(grid.entries) + kSpan - 1) / kSpan);
+        run_serially(kPlace, chunks);
     }
 };
 

@@ -11,7 +11,7 @@ CONST uint CHUNK = 4096u;
 
 KERNEL(hash_list_insert) {
     PhotonGrid g = grid[0];
-    uint end = min((index + 1u) * CHUNK, g.sizes.x);
+    uint end = min((index + 1u) * CHUNK, g.count);
     uint begin = index * CHUNK;
     for (; begin < end; begin += min(BATCH, end - begin)) {
         uint buckets[BATCH];
@@ -22,7 +22,7 @@ KERNEL(hash_list_insert) {
         }
         for (uint k = 0u; k < count; ++k) {
             uvec4 place = photons[begin + k].place;
-            if (g.sizes.z != 0u) {
+            if (g.option != 0u) {
                 links[begin + k] = uvec2(place.w, heads[buckets[k]]);
             } else {
                 nodes[begin + k] = uvec4(place.x, place.y, place.z, heads[buckets[k]]);

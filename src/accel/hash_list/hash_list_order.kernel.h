@@ -9,5 +9,5 @@ BUFFER_RW(2, uvec2, links)
 CONST uint CHUNK = 8u;
 
 KERNEL(hash_list_order) {
-    for (uint part = 0u; part < CHUNK; ++part) sort_chains(index * CHUNK + part, grid[0].sizes.y);
+    for (uint part = 0u; part < CHUNK; ++part) sort_chains(index * CHUNK + part, grid[0].entries);
 }

@@ -9,7 +9,7 @@ BUFFER_RW(3, uvec4, nodes)
 CONST uint CHUNK = 4096u;
 
 KERNEL(hash_list_place) {
-    uint end = min((index + 1u) * CHUNK, grid[0].sizes.x);
+    uint end = min((index + 1u) * CHUNK, grid[0].count);
     uint i = index * CHUNK;
     for (; i < end; ++i) {
         uvec4 place = photons[i].place;

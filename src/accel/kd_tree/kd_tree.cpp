@@ -56,8 +56,13 @@ class KdTree : public PhotonMap {
     const BufferHandle& of(const char* what, size_t round) const { return kept(fmt::format("{} {}", what, round)); }
     BufferHandle arguments(const std::vector<Round>& rounds, size_t round, uint32_t step) {
         KdCode::KdArgs args{};
-        args.sizes = glm::uvec4(photons_.count, params.leaf, round, rounds[round].cells / KdCode::KD_GROUP);
-        args.nodes = glm::uvec4(rounds[round].first_node, rounds[round].first_node + rounds[round].cells, step, 0);
+        args.count = photons_.count;
+        args.leaf_photons = params.leaf;
+        args.round = uint32_t(round);
+        args.groups = rounds[round].cells / KdCode::KD_GROUP;
+        args.first_node = rounds[round].first_node;
+        args.next_node = rounds[round].first_node + rounds[round].cells;
+        args.step = step;
         return upload("arguments", args);
     }
 
@@ -82,24 +87,32 @@ class KdTree : public PhotonMap {
     Round split(const std::vector<Round>& rounds) {
         const size_t round = rounds.size() - 1;
         const Round& now = rounds.back();
-        const BufferHandle& photons = photons_.photons;
-        const BufferHandle args = arguments(rounds, round, 0);
+        arguments(rounds, round, 0);
         const BufferHandle larges = of("large nodes", round), chunks = of("chunks", round),
                            owners = of("owners", round);
-        const BufferHandle order = kept("order"), places = kept("places"), scratch = kept("fluxes");
+        const BufferHandle scratch = kept("fluxes");
         const BufferHandle starts = keep_of("starts", round, (size_t(now.cells) + 1) * 4);
         const BufferHandle links = keep_of("links", round, size_t(now.cells) * 4);
         if (round > 0) {
-            run(kBound, {args, photons, chunks, larges, order, places, scratch}, now.chunks * 32);
-            run(kShape, {args, larges}, now.larges);
+            run(kBound, now.chunks * 32, {{"chunks", chunks}, {"larges", larges}, {"scratch", scratch}});
+            run(kShape, now.larges, {{"larges", larges}});
         }
         clear(starts, (size_t(now.cells) + 1) * 4);
-        run(kCount, {args, photons, larges, chunks, places, starts, scratch}, now.chunks * 32);
+        run(kCount, now.chunks * 32,
+            {{"larges", larges}, {"chunks", chunks}, {"starts", starts}, {"scratch", scratch}});
         scan(starts, now.cells + 1);
-        run(kScatter, {args, larges, chunks, starts, scratch, order}, now.chunks * 32);
+        run(kScatter, now.chunks * 32,
+            {{"larges", larges}, {"chunks", chunks}, {"starts", starts}, {"scratch", scratch}});
         const glm::uvec4 none[2]{};
         const BufferHandle counters = upload("counters", none);
-        run(kList, {args, larges, owners, starts, counters, links, larges, links, links}, now.cells);
+        run(kList, now.cells,
+            {{"larges", larges},
+             {"owners", owners},
+             {"starts", starts},
+             {"links", links},
+             {"next", larges},
+             {"next_chunks", links},
+             {"next_owners", links}});
         glm::uvec4 counted;
         counters->download(&counted, sizeof counted);
         const Round next{counted.x, counted.y, counted.z, counted.w, now.first_node + now.cells};
@@ -107,27 +120,36 @@ class KdTree : public PhotonMap {
         keep_of("large nodes", round + 1, size_t(next.larges) * sizeof(KdCode::KdLarge));
         keep_of("chunks", round + 1, size_t(next.chunks) * 4);
         keep_of("owners", round + 1, size_t(next.cells) / KdCode::KD_GROUP * 4);
-        run(kList,
-            {arguments(rounds, round, 1), larges, owners, starts, counters, links, of("large nodes", round + 1),
-             of("chunks", round + 1), of("owners", round + 1)},
-            now.cells);
+        arguments(rounds, round, 1);
+        run(kList, now.cells,
+            {{"larges", larges},
+             {"owners", owners},
+             {"starts", starts},
+             {"links", links},
+             {"next", of("large nodes", round + 1)},
+             {"next_chunks", of("chunks", round + 1)},
+             {"next_owners", of("owners", round + 1)}});
         return next;
     }
 
     // Copies the photons that the round has brought to leaves, and builds its nodes.
     void join(const std::vector<Round>& rounds, size_t round) {
         const uint32_t groups = rounds[round].cells / KdCode::KD_GROUP;
-        const BufferHandle boxes = keep("boxes", size_t(groups) * sizeof(KdCode::KdBox));
-        const BufferHandle nodes = kept("nodes");
+        keep("boxes", size_t(groups) * sizeof(KdCode::KdBox));
         const BufferHandle larges = of("large nodes", round), owners = of("owners", round),
                            starts = of("starts", round);
         const BufferHandle next = round + 1 < rounds.size() ? of("large nodes", round + 1) : larges;
-        run(kLeaves,
-            {arguments(rounds, round, 0), photons_.photons, larges, owners, starts, of("links", round), next,
-             kept("order"), kept("places"), kept("fluxes"), nodes, boxes},
-            groups);
-        for (uint32_t step = 1; KdCode::KD_GROUP_LEVELS * step < rounds[round].levels; ++step)
-            run(kLevels, {arguments(rounds, round, step), larges, owners, starts, nodes, boxes}, groups);
+        arguments(rounds, round, 0);
+        run(kLeaves, groups,
+            {{"larges", larges},
+             {"owners", owners},
+             {"starts", starts},
+             {"links", of("links", round)},
+             {"next", next}});
+        for (uint32_t step = 1; KdCode::KD_GROUP_LEVELS * step < rounds[round].levels; ++step) {
+            arguments(rounds, round, step);
+            run(kLevels, groups, {{"larges", larges}, {"owners", owners}, {"starts", starts}});
+        }
     }
 
     void construct(const PhotonSet& photons) override {
@@ -147,9 +169,6 @@ class KdTree : public PhotonMap {
         if (count > 0)
             for (size_t round = rounds.size(); round-- > 0;) join(rounds, round);
         arguments(rounds, 0, 0);
-    }
-    std::vector<BufferHandle> gather_buffers() const override {
-        return {kept("arguments"), kept("nodes"), kept("places"), kept("fluxes")};
     }
 
  private:

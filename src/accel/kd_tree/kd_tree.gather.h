@@ -20,7 +20,7 @@ KERNEL(kd_tree) {
     vec4 q = queries[index];
     if (q.w < 0.0f) return;
     Gathered gathered = gather_begin(index);
-    uint count = arguments[0].sizes.x;
+    uint count = arguments[0].count;
     float limit = max(q.w * q.w, SMALLEST_RADIUS_SQUARED);
 #ifdef GATHER_SHRINKS
     limit = min(limit, gather_limit(gathered));
@@ -45,7 +45,7 @@ KERNEL(kd_tree) {
             uint child = kd_child(n);
             uint middle = n.words.z;
             // What comes after the children: in the first round's levels it lies where it would in a heap.
-            if (2u * child < arguments[0].nodes.y) PREFETCH(nodes[2u * child]);
+            if (2u * child < arguments[0].next_node) PREFETCH(nodes[2u * child]);
             if (end - begin < 64u) {
                 PREFETCH(places[begin]);
                 PREFETCH(places[middle]);

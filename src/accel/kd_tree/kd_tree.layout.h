@@ -31,9 +31,14 @@ struct KdBox {
 };
 
 struct KdArgs {
-    uvec4 sizes;  // x: photons, y: photons of a leaf, z: round, w: groups of cells in this round
-    uvec4
-        nodes;  // x: place of the round's first node, y: of the next round's; z: which step of levels; of list, whether it is its second run
+    uint count;         // of photons
+    uint leaf_photons;  // of a leaf, on average at most
+    uint round;
+    uint groups;      // of cells, in this round
+    uint first_node;  // of the round
+    uint next_node;   // the next round's first
+    uint step;        // of levels; of list, whether it is its second run
+    uint unused0;
 };
 
 struct KdLarge {

@@ -10,7 +10,7 @@ BUFFER_RW(5, uvec4, places)
 BUFFER_RW(6, uint, scratch)
 
 KERNEL(kd_tree_bound) {
-    uint count = arguments[0].sizes.x;
+    uint count = arguments[0].count;
     uint chunk = index / 32u;
     uint large = chunks[chunk];
     uint begin = larges[large].photons.x + (chunk - larges[large].photons.z) * KD_CHUNK;

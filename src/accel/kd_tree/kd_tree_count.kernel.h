@@ -10,7 +10,7 @@ BUFFER_RW(5, uint, starts)
 BUFFER_RW(6, uint, scratch)  // (cell, rank) of each photon; then, from the second round on, its index
 
 KERNEL(kd_tree_count) {
-    bool first_round = arguments[0].sizes.z == 0u;
+    bool first_round = arguments[0].round == 0u;
     uint chunk = index / 32u;
     KdLarge large = larges[first_round ? 0u : chunks[chunk]];
     uint begin = large.photons.x + (chunk - large.photons.z) * KD_CHUNK;

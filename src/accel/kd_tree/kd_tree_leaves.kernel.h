@@ -17,26 +17,26 @@ BUFFER_RW(11, KdBox, boxes)
 
 KERNEL(kd_tree_leaves) {
     KdArgs args = arguments[0];
-    if (index >= args.sizes.w) return;
-    KdLarge large = larges[args.sizes.z == 0u ? 0u : owners[index]];
+    if (index >= args.groups) return;
+    KdLarge large = larges[args.round == 0u ? 0u : owners[index]];
     uint cell = index * KD_GROUP;
     uint start = large.photons.x - starts[large.cells.x];
     KdGroup g;
     g.are_nodes = 0u;
     for (uint c = 0u; c <= KD_GROUP; ++c) g.starts[c] = start + starts[cell + c];
     for (uint c = 0u; c < KD_GROUP; ++c) {
-        if (kd_is_large(g.starts[c + 1u] - g.starts[c], args.sizes.y)) continue;
+        if (kd_is_large(g.starts[c + 1u] - g.starts[c], args.leaf_photons)) continue;
         for (uint i = g.starts[c]; i < g.starts[c + 1u]; ++i) PREFETCH(photons[order[i]]);
     }
     for (uint c = 0u; c < KD_GROUP; ++c) {
         uint begin = g.starts[c];
         uint count = g.starts[c + 1u] - begin;
         g.places[c] = 1u;
-        if (kd_is_large(count, args.sizes.y)) {
+        if (kd_is_large(count, args.leaf_photons)) {
             KdLarge child = next[links[cell + c]];
             g.low[c] = vec4(kd_low(child), 0.0f);
             g.high[c] = vec4(kd_high(child), 0.0f);
-            g.places[c] = args.nodes.y + child.cells.x;
+            g.places[c] = args.next_node + child.cells.x;
             g.are_nodes |= 1u << c;
             continue;
         }
@@ -57,8 +57,8 @@ KERNEL(kd_tree_leaves) {
         g.low[c] = vec4(low.x, low.y, low.z, 0.0f);
         g.high[c] = vec4(high.x, high.y, high.z, 0.0f);
     }
-    KdBox box =
-        kd_join(large, args.nodes.x + large.cells.x, args.sizes.y, large.cells.y, cell - large.cells.x, KD_GROUP, g);
+    KdBox box = kd_join(large, args.first_node + large.cells.x, args.leaf_photons, large.cells.y, cell - large.cells.x,
+                        KD_GROUP, g);
     boxes[index] = box;
-    kd_join_root(large, args.sizes.z, KD_GROUP_LEVELS, box);
+    kd_join_root(large, args.round, KD_GROUP_LEVELS, box);
 }

@@ -11,9 +11,9 @@ BUFFER_RW(5, KdBox, boxes)  // of a node: where its first group's was
 
 KERNEL(kd_tree_levels) {
     KdArgs args = arguments[0];
-    if (index >= args.sizes.w) return;
-    KdLarge large = larges[args.sizes.z == 0u ? 0u : owners[index]];
-    uint built = KD_GROUP_LEVELS * args.nodes.z;
+    if (index >= args.groups) return;
+    KdLarge large = larges[args.round == 0u ? 0u : owners[index]];
+    uint built = KD_GROUP_LEVELS * args.step;
     uint group = index - large.cells.x / KD_GROUP;
     // What one invocation joins begins at every 16^step-th group.
     if (large.cells.y <= built || (group & ((1u << built) - 1u)) != 0u) return;
@@ -28,10 +28,11 @@ KERNEL(kd_tree_levels) {
         KdBox box = boxes[index + ((i << built) / KD_GROUP)];
         g.low[i] = box.low;
         g.high[i] = box.high;
-        g.places[i] = large.cells.x + args.nodes.x + (1u << (large.cells.y - built)) + first + i;
+        g.places[i] = large.cells.x + args.first_node + (1u << (large.cells.y - built)) + first + i;
         g.are_nodes |= box.low.w != 0.0f ? 1u << i : 0u;
     }
-    KdBox box = kd_join(large, args.nodes.x + large.cells.x, args.sizes.y, large.cells.y - built, first, width, g);
+    KdBox box =
+        kd_join(large, args.first_node + large.cells.x, args.leaf_photons, large.cells.y - built, first, width, g);
     boxes[index] = box;
-    kd_join_root(large, args.sizes.z, built + levels, box);
+    kd_join_root(large, args.round, built + levels, box);
 }

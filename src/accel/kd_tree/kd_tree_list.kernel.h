@@ -14,20 +14,20 @@ BUFFER_RW(8, uint, next_owners)
 
 KERNEL(kd_tree_list) {
     KdArgs args = arguments[0];
-    if (index >= args.sizes.w * KD_GROUP) return;
+    if (index >= args.groups * KD_GROUP) return;
     uint begin = starts[index];
     uint count = starts[index + 1u] - begin;
-    if (!kd_is_large(count, args.sizes.y)) return;
-    uint levels = kd_levels(count, args.sizes.y);
+    if (!kd_is_large(count, args.leaf_photons)) return;
+    uint levels = kd_levels(count, args.leaf_photons);
     uint chunks = (count + KD_CHUNK - 1u) / KD_CHUNK;
-    bool counting = args.nodes.z == 0u;
+    bool counting = args.step == 0u;
     uint first = counting ? 0u : 4u;
     uint node = ATOMIC_ADD_U32(counters[first], 1u);
     uint chunk = ATOMIC_ADD_U32(counters[first + 1u], chunks);
     uint cell = ATOMIC_ADD_U32(counters[first + 2u], 1u << levels);
     ATOMIC_MAX_U32(counters[first + 3u], levels);
     if (counting) return;
-    KdLarge parent = larges[args.sizes.z == 0u ? 0u : owners[index / KD_GROUP]];
+    KdLarge parent = larges[args.round == 0u ? 0u : owners[index / KD_GROUP]];
     links[index] = node;
     next[node].photons = uvec4(parent.photons.x + begin - starts[parent.cells.x], count, chunk, 0u);
     next[node].cells = uvec4(cell, levels, 0u, 0u);

@@ -9,7 +9,7 @@ BUFFER_RO(4, uint, scratch)
 BUFFER_RW(5, uint, order)
 
 KERNEL(kd_tree_scatter) {
-    bool first_round = arguments[0].sizes.z == 0u;
+    bool first_round = arguments[0].round == 0u;
     uint chunk = index / 32u;
     KdLarge large = larges[first_round ? 0u : chunks[chunk]];
     uint begin = large.photons.x + (chunk - large.photons.z) * KD_CHUNK;
@@ -28,6 +28,6 @@ KERNEL(kd_tree_scatter) {
     }
     for (uint k = 0u; k < BATCH; ++k) {
         uint i = begin + batch_item(index, k) - chunk * KD_CHUNK;
-        if (i < end) order[to[k]] = first_round ? i : scratch[2u * arguments[0].sizes.x + i];
+        if (i < end) order[to[k]] = first_round ? i : scratch[2u * arguments[0].count + i];
     }
 }

@@ -6,6 +6,6 @@ BUFFER_RW(1, KdLarge, larges)
 
 KERNEL(kd_tree_shape) {
     KdLarge large = larges[index];
-    kd_shape(large, arguments[0].sizes.z);
+    kd_shape(large, arguments[0].round);
     larges[index] = large;
 }

@@ -22,20 +22,17 @@ class LinkedList : public PhotonMap {
         const bool keyed = params.order == 0;
         const size_t count = photons.count;
         kernel::PhotonGrid grid = make_grid(photons, params.cell_size);
-        grid.sizes.y = table_entries(photons, params.table_size);
-        grid.sizes.z = keyed;
-        const BufferHandle record = upload("grid", grid);
-        const BufferHandle heads = keep("heads", size_t(grid.sizes.y) * 4);
-        const BufferHandle links = keep("links", keyed ? count * 8 : 8);
-        const BufferHandle nodes = keep("nodes", count * 16);
-        clear(heads, size_t(grid.sizes.y) * 4);
-        run(kLink, {record, photons.photons, heads, links, nodes}, span_count(photons.count));
+        grid.entries = table_entries(photons, params.table_size);
+        grid.option = keyed;
+        upload("grid", grid);
+        const BufferHandle heads = keep("heads", size_t(grid.entries) * 4);
+        keep("links", keyed ? count * 8 : 8);
+        keep("nodes", count * 16);
+        clear(heads, size_t(grid.entries) * 4);
+        run(kLink, span_count(photons.count));
         if (!keyed) return;
-        run(kOrder, {record, heads, links}, (batch_count(grid.sizes.y) + kSpan - 1) / kSpan);
-        run(kPlace, {record, photons.photons, links, nodes}, batch_count(photons.count));
-    }
-    std::vector<BufferHandle> gather_buffers() const override {
-        return {kept("grid"), kept("heads"), kept("nodes"), photons_.photons};
+        run(kOrder, (batch_count(grid.entries) + kSpan - 1) / kSpan);
+        run(kPlace, batch_count(photons.count));
     }
 };
 

@@ -32,7 +32,7 @@ FN bool linked_list_chains(IN(PhotonGrid) g, vec4 q, uvec3 low, uvec3 size, uint
         alive += 1u;
     }
     uint steps = 0u;
-    for (; alive > 0u && steps < g.sizes.x; ++steps) {
+    for (; alive > 0u && steps < g.count; ++steps) {
         uint k = 0u;
         while (k < alive) {
             uint photon = links[k] - 1u;

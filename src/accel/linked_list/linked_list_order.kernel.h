@@ -6,4 +6,4 @@ BUFFER_RW(1, uint, heads)
 BUFFER_RW(2, uvec2, links)
 #include "accel/linked_list/linked_list_chains.layout.h"
 
-KERNEL(linked_list_order) { sort_chains(index, grid[0].sizes.y); }
+KERNEL(linked_list_order) { sort_chains(index, grid[0].entries); }

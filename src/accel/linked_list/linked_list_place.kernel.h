@@ -7,7 +7,7 @@ BUFFER_RO(2, uvec2, links)
 BUFFER_RW(3, uvec4, nodes)
 
 KERNEL(linked_list_place) {
-    uint count = grid[0].sizes.x;
+    uint count = grid[0].count;
     for (uint k = 0u; k < BATCH; ++k) {
         uint i = batch_item(index, k);
         if (i >= count) continue;

@@ -22,22 +22,19 @@ class SortedGrid : public PhotonMap {
     void construct(const PhotonSet& photons) override {
         kernel::PhotonGrid grid = make_grid(photons, params.cell_size);
         const uint32_t entries = std::bit_ceil(table_entries(photons, params.table_size));
-        grid.sizes.y = entries;
-        const BufferHandle record = upload("grid", grid);
+        grid.entries = entries;
+        upload("grid", grid);
         const BufferHandle starts = keep("starts", (size_t(entries) + 1) * 4);
         const BufferHandle ranks = keep("ranks", size_t(photons.count) * 8);
         const BufferHandle order = keep("order", size_t(photons.count) * 8);
-        const BufferHandle places = keep("places", size_t(photons.count) * 16);
-        const BufferHandle fluxes = keep("fluxes", size_t(photons.count) * 16);
+        keep("places", size_t(photons.count) * 16);
+        keep("fluxes", size_t(photons.count) * 16);
         const uint32_t batches = batch_count(photons.count);
         clear(starts, (size_t(entries) + 1) * 4);
-        run(kCount, {record, photons.photons, starts, ranks}, span_count(photons.count));
+        run(kCount, span_count(photons.count));
         scan(starts, entries + 1);
-        run(kScatter, {record, photons.photons, starts, ranks, order}, batches);
-        run(kOrder, {record, photons.photons, starts, order, ranks, places, fluxes}, batch_count(entries));
-    }
-    std::vector<BufferHandle> gather_buffers() const override {
-        return {kept("grid"), kept("starts"), kept("places"), kept("fluxes")};
+        run(kScatter, batches);
+        run(kOrder, batch_count(entries), {{"pairs", order}, {"order", ranks}});
     }
 };
 

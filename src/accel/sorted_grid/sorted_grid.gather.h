@@ -33,7 +33,7 @@ KERNEL(sorted_grid) {
     vec3 reach = vec3(range_reach(q.w));
     uvec3 low = grid_cell(g, vec3(q) - reach);
     uvec3 high = grid_cell(g, vec3(q) + reach);
-    uint entries = g.sizes.y;
+    uint entries = g.entries;
     uint z = low.z;
     for (; z <= high.z; ++z) {
         uint y = low.y;

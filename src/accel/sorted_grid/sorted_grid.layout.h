@@ -6,7 +6,7 @@
 
 // Each row of cells starts at a random entry. The table's size is a power of two.
 FN uint sorted_grid_entry(IN(PhotonGrid) g, uvec3 cell) {
-    return (row_hash(cell.y, cell.z, g.resolution.w) + cell.x) & (g.sizes.y - 1u);
+    return (row_hash(cell.y, cell.z, g.resolution.w) + cell.x) & (g.entries - 1u);
 }
 
 #endif

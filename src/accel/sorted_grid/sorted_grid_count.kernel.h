@@ -14,19 +14,19 @@ KERNEL(sorted_grid_count) {
     for (uint turn = 0u; turn <= SPAN; ++turn) {
         for (uint k = 0u; k < BATCH && turn < SPAN; ++k) {
             uint i = span_item(index, turn, k);
-            if (i >= g.sizes.x) continue;
+            if (i >= g.count) continue;
             uint entry = sorted_grid_entry(g, grid_cell(g, place_position(photons[i].place)));
             entries[span_room(turn, k)] = entry;
             PREFETCH(starts[entry]);
         }
         // Atomics wait for the stores before them: none lies between.
         for (uint k = 0u; k < BATCH && turn > 0u; ++k) {
-            if (span_item(index, turn - 1u, k) < g.sizes.x)
+            if (span_item(index, turn - 1u, k) < g.count)
                 counts[k] = ATOMIC_ADD_U32(starts[entries[span_room(turn - 1u, k)]], 1u);
         }
         for (uint k = 0u; k < BATCH && turn > 0u; ++k) {
             uint i = span_item(index, turn - 1u, k);
-            if (i < g.sizes.x) ranks[i] = uvec2(entries[span_room(turn - 1u, k)], counts[k]);
+            if (i < g.count) ranks[i] = uvec2(entries[span_room(turn - 1u, k)], counts[k]);
         }
     }
 }

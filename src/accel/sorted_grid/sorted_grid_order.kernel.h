@@ -18,7 +18,7 @@ FN void sorted_grid_copy(uint to, uint from) {
 }
 
 KERNEL(sorted_grid_order) {
-    uint entries = grid[0].sizes.y;
+    uint entries = grid[0].entries;
     // What the invocation after the next will read: this one's own would come too late.
     for (uint k = 0u; k < BATCH; ++k) {
         uint entry = batch_item(index + 2u, k);

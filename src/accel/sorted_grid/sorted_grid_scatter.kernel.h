@@ -8,7 +8,7 @@ BUFFER_RO(3, uvec2, ranks)
 BUFFER_RW(4, uvec2, order)
 
 KERNEL(sorted_grid_scatter) {
-    uint count = grid[0].sizes.x;
+    uint count = grid[0].count;
     for (uint k = 0u; k < BATCH; ++k) {
         uint i = batch_item(index, k);
         if (i < count) PREFETCH(starts[ranks[i].x]);

@@ -36,31 +36,29 @@ class Splat : public PhotonMap {
         PhotonSet hits;
         hits.count = photons.query_count;
         const uint32_t entries = std::bit_ceil(table_entries(hits, params.table_size));
-        record.grid.sizes = {photons.query_count, entries, photons.count, 0};
+        record.grid.count = photons.query_count;
+        record.grid.entries = entries;
         // Powers of two, so that scaling rounds nothing: 2^-30 of the mean power is the smallest share, and a sum of 2^33 times it fits.
         const float mean = photons.mean_power > 0 ? photons.mean_power : 1.0f;
         const float scale = std::ldexp(1.0f, std::clamp(30 - std::ilogb(mean), -100, 100));
         record.scale = glm::vec4(scale, scale, scale, std::ldexp(1.0f, 20));
         record.reach.x = std::max(photons.radius * 1.000001f, 4e-19f);  // range_reach of core/kernel/photon.h
-        const BufferHandle arguments = upload("splat", record);
+        upload("splat", record);
         const BufferHandle starts = keep("starts", (size_t(entries) + 1) * 4);
-        const BufferHandle ranks = keep("ranks", size_t(photons.query_count) * 8);
-        const BufferHandle sorted = keep("sorted", size_t(photons.query_count) * 16);
-        const BufferHandle ids = keep("ids", size_t(photons.query_count) * 4);
+        keep("ranks", size_t(photons.query_count) * 8);
+        keep("sorted", size_t(photons.query_count) * 16);
+        keep("ids", size_t(photons.query_count) * 4);
         keep("sums", size_t(photons.query_count) * 32);
         clear(starts, (size_t(entries) + 1) * 4);
-        run(kCount, {arguments, photons.queries, starts, ranks}, batch_count(photons.query_count));
+        run(kCount, batch_count(photons.query_count), {{"hits", photons.queries}});
         scan(starts, entries + 1);
-        run(kScatter, {arguments, photons.queries, starts, ranks, sorted, ids}, batch_count(photons.query_count));
+        run(kScatter, batch_count(photons.query_count), {{"hits", photons.queries}});
     }
-    std::vector<BufferHandle> gather_buffers() const override {
-        return {kept("splat"), kept("starts"), kept("sorted"), kept("ids"), photons_.photons, kept("sums")};
-    }
-    void run_gather(std::span<const Kernel* const> kernels, const PhotonConsumer& consumer,
-                    std::span<const BufferHandle> buffers, uint32_t first, uint32_t count) override {
+    void run_gather(std::span<const Kernel* const> kernels, const PhotonConsumer& consumer, const BufferHandle& queries,
+                    uint32_t first, uint32_t count) override {
         clear(kept("sums"), size_t(photons_.query_count) * 32);
-        device().run(*kernels[0], consumer.scene, buffers, 0, photons_.count);
-        device().run(*kernels[1], consumer.scene, buffers, first, count);
+        run_gather_kernel(*kernels[0], consumer, queries, 0, photons_.count);
+        run_gather_kernel(*kernels[1], consumer, queries, first, count);
     }
 };
 

@@ -49,8 +49,8 @@ KERNEL(splat) {
             // As the sorted grid's rows: see sorted_grid.gather.h.
             uvec3 from = uvec3(low.x, y, z);
             uint first = splat_entry(g, from);
-            uint length = min(high.x - low.x + 1u, g.sizes.y);
-            uint before = min(length, g.sizes.y - first);
+            uint length = min(high.x - low.x + 1u, g.entries);
+            uint before = min(length, g.entries - first);
             splat_range(s, photon, from, high, starts[first], starts[first + before]);
             if (before < length) splat_range(s, photon, from, high, 0u, starts[length - before]);
         }

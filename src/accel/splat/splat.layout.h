@@ -4,7 +4,7 @@
 
 #include "core/kernel/photon_grid.h"
 
-// grid.sizes: hit points, entries (a power of two), photons.
+// Of the grid: `count` hit points, and entries, a power of two.
 struct SplatRecord {
     PhotonGrid grid;
     vec4 scale;  // xyz: of a power to fixed point; w: of a count. Exact powers of two.
@@ -12,7 +12,7 @@ struct SplatRecord {
 };
 
 FN uint splat_entry(IN(PhotonGrid) g, uvec3 cell) {
-    return (row_hash(cell.y, cell.z, g.resolution.w) + cell.x) & (g.sizes.y - 1u);
+    return (row_hash(cell.y, cell.z, g.resolution.w) + cell.x) & (g.entries - 1u);
 }
 
 #endif

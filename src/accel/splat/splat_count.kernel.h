@@ -11,12 +11,12 @@ KERNEL(splat_count) {
     uint entries[BATCH];
     for (uint k = 0u; k < BATCH; ++k) {
         uint i = batch_item(index, k);
-        if (i >= g.sizes.x) continue;
+        if (i >= g.count) continue;
         entries[k] = splat_entry(g, grid_cell(g, vec3(hits[i])));
         PREFETCH(starts[entries[k]]);
     }
     for (uint k = 0u; k < BATCH; ++k) {
         uint i = batch_item(index, k);
-        if (i < g.sizes.x && hits[i].w >= 0.0f) ranks[i] = uvec2(entries[k], ATOMIC_ADD_U32(starts[entries[k]], 1u));
+        if (i < g.count && hits[i].w >= 0.0f) ranks[i] = uvec2(entries[k], ATOMIC_ADD_U32(starts[entries[k]], 1u));
     }
 }

@@ -9,7 +9,7 @@ BUFFER_RW(4, vec4, sorted)
 BUFFER_RW(5, uint, ids)
 
 KERNEL(splat_scatter) {
-    uint count = splat[0].grid.sizes.x;
+    uint count = splat[0].grid.count;
     for (uint k = 0u; k < BATCH; ++k) {
         uint i = batch_item(index, k);
         if (i >= count || hits[i].w < 0.0f) continue;

@@ -13,8 +13,9 @@ enum Selection : uint32_t { kRace, kPriority, kFlux };
 
 struct HashRecord {  // StochasticHash of stochastic_hash.layout.h
     kernel::PhotonGrid grid;
-    glm::uvec4 options;
-    glm::vec4 flux_scale;
+    uint32_t selection, race_bits;
+    float flux_scale;
+    uint32_t unused0;
 };
 
 class StochasticHash : public PhotonMap {
@@ -53,21 +54,23 @@ class StochasticHash : public PhotonMap {
     }
 
     void construct(const PhotonSet& photons) override {
-        HashRecord record{make_grid(photons, params.cell_size), {params.selection, 0, 0, 0}, {}};
+        HashRecord record{};
+        record.grid = make_grid(photons, params.cell_size);
+        record.selection = params.selection;
         buckets_ = table_entries(photons, params.table_size);
-        record.grid.sizes = {photons.count, buckets_, params.slots, record.grid.resolution.w * 0x9e3779b9u + 1u};
-        record.options.y = std::max(11u, uint32_t(std::bit_width(std::max(photons.count, 1u) - 1)));
+        record.grid.entries = buckets_;
+        record.grid.capacity = params.slots;
+        record.grid.option = record.grid.resolution.w * 0x9e3779b9u + 1u;
+        record.race_bits = std::max(11u, uint32_t(std::bit_width(std::max(photons.count, 1u) - 1)));
         // 1024 for a photon of mean power: weights are whole, and 2^22 times the mean is as bright as a photon gets.
-        if (photons.mean_power > 0) record.flux_scale.x = 1024.0f / (3.0f * photons.mean_power);
+        if (photons.mean_power > 0) record.flux_scale = 1024.0f / (3.0f * photons.mean_power);
         const size_t bytes = size_t(buckets_) * (params.slots + 1) * 8;
-        const BufferHandle table = keep("table", bytes), arguments = upload("hash", record);
+        const BufferHandle table = keep("table", bytes);
+        upload("hash", record);
         clear(table, bytes);
         // A race goes over all numbers of so many bits, those of no photon among them.
-        const uint64_t items = params.selection == kRace ? uint64_t(1) << record.options.y : photons.count;
-        run(kernel_file(), {arguments, photons.photons, table}, span_count(uint32_t(items)));
-    }
-    std::vector<BufferHandle> gather_buffers() const override {
-        return {kept("hash"), kept("table"), photons_.photons};
+        const uint64_t items = params.selection == kRace ? uint64_t(1) << record.race_bits : photons.count;
+        run(kernel_file(), span_count(uint32_t(items)));
     }
 
  private:

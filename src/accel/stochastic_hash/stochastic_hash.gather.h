@@ -11,8 +11,8 @@ KERNEL(stochastic_hash) {
     if (q.w < 0.0f) return;
     Gathered gathered = gather_begin(index);
     PhotonGrid g = hash[0].grid;
-    bool by_flux = hash[0].options.x == SELECT_FLUX;
-    uint slots = g.sizes.z;
+    bool by_flux = hash[0].selection == SELECT_FLUX;
+    uint slots = g.capacity;
     vec3 reach = vec3(range_reach(q.w));
     uvec3 low = grid_cell(g, vec3(q) - reach);
     uvec3 high = grid_cell(g, vec3(q) + reach);
@@ -23,7 +23,7 @@ KERNEL(stochastic_hash) {
             uint row = row_hash(y, z, g.resolution.w);
             uint x = low.x;
             for (; x <= high.x; ++x) {
-                uint bucket = (slots + 1u) * hashed_entry(cell_hash(row, x), g.sizes.y);
+                uint bucket = (slots + 1u) * hashed_entry(cell_hash(row, x), g.entries);
                 uvec2 total = table[bucket];
                 if (total.x == 0u && total.y == 0u) continue;
                 uint kept = by_flux ? 1u : min(total.x, slots);
@@ -36,7 +36,7 @@ KERNEL(stochastic_hash) {
                     float weight = float(total.x) / float(kept);
                     if (by_flux)
                         weight = (float(total.y) * 4294967296.0f + float(total.x)) /
-                                 float(flux_weight(photon, hash[0].flux_scale.x));
+                                 float(flux_weight(photon, hash[0].flux_scale));
                     gather_add(gathered, index, photon, d2, weight);
                 }
             }

@@ -9,11 +9,13 @@ CONST uint SELECT_RACE = 0u;
 CONST uint SELECT_PRIORITY = 1u;
 CONST uint SELECT_FLUX = 2u;
 
-// In PhotonGrid: sizes.y buckets, sizes.z slots, sizes.w seed of the selection.
+// In PhotonGrid: entries are buckets, capacity the slots of each, option the seed of the selection.
 struct StochasticHash {
     PhotonGrid grid;
-    uvec4 options;    // x: selection; y: bits of the numbers that a race shuffles
-    vec4 flux_scale;  // x: weights of flux selection per power, 0: all alike
+    uint selection;    // SELECT_*
+    uint race_bits;    // of the numbers that a race shuffles
+    float flux_scale;  // weights of flux selection per power, 0: all alike
+    uint unused0;
 };
 
 // A bijection for each seed: no two keys tie, and whom it picks does not depend on who came when.

@@ -35,23 +35,22 @@ class UniformGrid : public PhotonMap {
     void construct(const PhotonSet& photons) override {
         kernel::PhotonGrid grid = bounded_grid(photons);
         const uint32_t cells = grid.resolution.x * grid.resolution.y * grid.resolution.z;
-        grid.sizes = {photons.count, cells, params.capacity, params.overflow};
-        const BufferHandle record = upload("grid", grid);
+        grid.entries = cells;
+        grid.capacity = params.capacity;
+        grid.option = params.overflow;
+        upload("grid", grid);
         const BufferHandle counts = keep("counts", size_t(cells) * 8);
-        const BufferHandle slots = keep("slots", size_t(cells) * params.capacity * 16);
-        const BufferHandle keys = keep("keys", size_t(cells) * params.capacity * 4);
+        keep("slots", size_t(cells) * params.capacity * 16);
+        keep("keys", size_t(cells) * params.capacity * 4);
         const BufferHandle nodes = keep("nodes", drops() ? 16 : size_t(photons.count) * 16);
         const BufferHandle dropped = upload("dropped", uint32_t(0));
         clear(counts, size_t(cells) * 8);
-        run(kStore, {record, photons.photons, counts, slots, keys, nodes, dropped}, span_count(photons.count));
-        run(kOrder, {record, photons.photons, counts, slots, keys, nodes}, batch_count(cells));
+        run(kStore, span_count(photons.count));
+        run(kOrder, batch_count(cells), {{"links", nodes}});
         if (!drops()) return;
         uint32_t lost = 0;
         dropped->download(&lost, sizeof lost);
         statistics_.lost_photons += lost;
-    }
-    std::vector<BufferHandle> gather_buffers() const override {
-        return {kept("grid"), kept("counts"), kept("slots"), kept("nodes"), photons_.photons};
     }
 };
 

@@ -10,9 +10,9 @@ BUFFER_RO(5, PhotonRecord, photons)
 
 FN void uniform_grid_cell(IN(PhotonGrid) g, vec4 q, uint cell, uint query, INOUT(Gathered) gathered) {
     uvec2 count = counts[cell];
-    uint held = min(count.x, g.sizes.z);
-    uint first = cell * g.sizes.z;
-    float weight = g.sizes.w != 0u && held > 0u ? float(count.x) / float(held) : 1.0f;
+    uint held = min(count.x, g.capacity);
+    uint first = cell * g.capacity;
+    float weight = g.option != 0u && held > 0u ? float(count.x) / float(held) : 1.0f;
     for (uint s = 0u; s < held; ++s) {
         uvec4 slot = slots[first + s];
         float d2;
@@ -20,7 +20,7 @@ FN void uniform_grid_cell(IN(PhotonGrid) g, vec4 q, uint cell, uint query, INOUT
     }
     uint link = count.y;
     uint steps = 0u;
-    for (; link != 0u && steps < g.sizes.x; ++steps) {
+    for (; link != 0u && steps < g.count; ++steps) {
         uint photon = link - 1u;
         uvec4 node = nodes[photon];
         link = node.w;
@@ -43,7 +43,7 @@ KERNEL(uniform_grid) {
         uint row = c / size.x;
         uint cell = uniform_grid_index(g, low + uvec3(c - row * size.x, row % size.y, row / size.y));
         PREFETCH(counts[cell]);
-        PREFETCH(slots[cell * g.sizes.z]);
+        PREFETCH(slots[cell * g.capacity]);
     }
     uint c = 0u;
     for (; c < cells; ++c) {

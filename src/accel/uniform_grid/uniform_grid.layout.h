@@ -6,7 +6,7 @@
 
 #include "core/kernel/photon_grid.h"
 
-// In PhotonGrid: sizes.y cells, sizes.z capacity, sizes.w 1: what is beyond it is dropped.
+// In PhotonGrid: entries are cells; option 1: what is beyond the capacity is dropped.
 FN uint uniform_grid_index(IN(PhotonGrid) g, uvec3 cell) {
     return (cell.z * g.resolution.y + cell.y) * g.resolution.x + cell.x;
 }

@@ -13,8 +13,8 @@ CONST uint CELL_SHORT = 32u;  // photons that are sorted in registers
 
 // Of `count` photons, at most CELL_SHORT: those that have no slot are taken from the list.
 FN void uniform_grid_sort(IN(PhotonGrid) g, uint cell, uint count) {
-    uint first = cell * g.sizes.z;
-    uint held = min(count, g.sizes.z);
+    uint first = cell * g.capacity;
+    uint held = min(count, g.capacity);
     uvec4 items[CELL_SHORT];
     uint item_keys[CELL_SHORT];
     uint order[CELL_SHORT];
@@ -46,22 +46,22 @@ FN void uniform_grid_sort(IN(PhotonGrid) g, uint cell, uint count) {
 
 // Of any number of photons, more than have slots: all become one chain.
 FN void uniform_grid_sort_long(IN(PhotonGrid) g, uint cell) {
-    uint first = cell * g.sizes.z;
+    uint first = cell * g.capacity;
     uint head = counts[2u * cell + 1u];
-    for (uint s = 0u; s < g.sizes.z; ++s) {
+    for (uint s = 0u; s < g.capacity; ++s) {
         uint photon = slots[first + s].w;
         links[photon] = uvec4(keys[first + s], head, 0u, 0u);
         head = photon + 1u;
     }
     head = chain_merge_sort(head);
-    for (uint s = 0u; s < g.sizes.z; ++s) {
+    for (uint s = 0u; s < g.capacity; ++s) {
         uvec4 place = photons[head - 1u].place;
         slots[first + s] = uvec4(place.x, place.y, place.z, head - 1u);
         head = links[head - 1u].y;
     }
     counts[2u * cell + 1u] = head;
     uint steps = 0u;
-    for (; head != 0u && steps < g.sizes.x; ++steps) {
+    for (; head != 0u && steps < g.count; ++steps) {
         uvec4 place = photons[head - 1u].place;
         uint next = links[head - 1u].y;
         links[head - 1u] = uvec4(place.x, place.y, place.z, next);
@@ -72,19 +72,19 @@ FN void uniform_grid_sort_long(IN(PhotonGrid) g, uint cell) {
 
 KERNEL(uniform_grid_order) {
     PhotonGrid g = grid[0];
-    bool lists = g.sizes.w == 0u;
+    bool lists = g.option == 0u;
     for (uint k = 0u; k < BATCH; ++k) {
         uint cell = batch_item(index, k);
-        if (cell >= g.sizes.y || counts[2u * cell] <= g.sizes.z || !lists) continue;
+        if (cell >= g.entries || counts[2u * cell] <= g.capacity || !lists) continue;
         uint head = counts[2u * cell + 1u];
         PREFETCH(links[head - 1u]);
         PREFETCH(photons[head - 1u].place);
     }
     for (uint k = 0u; k < BATCH; ++k) {
         uint cell = batch_item(index, k);
-        if (cell >= g.sizes.y) continue;
+        if (cell >= g.entries) continue;
         uint count = counts[2u * cell];
-        if (!lists) count = min(count, g.sizes.z);
+        if (!lists) count = min(count, g.capacity);
         if (count > CELL_SHORT) {
             uniform_grid_sort_long(g, cell);
         } else if (count > 1u) {

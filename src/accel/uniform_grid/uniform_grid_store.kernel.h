@@ -17,30 +17,30 @@ KERNEL(uniform_grid_store) {
     for (uint turn = 0u; turn <= SPAN; ++turn) {
         for (uint k = 0u; k < BATCH && turn < SPAN; ++k) {
             uint i = span_item(index, turn, k);
-            if (i >= g.sizes.x) continue;
+            if (i >= g.count) continue;
             uint cell = uniform_grid_index(g, grid_cell(g, place_position(photons[i].place)));
             cells[span_room(turn, k)] = cell;
             PREFETCH(counts[2u * cell]);
         }
         // Atomics wait for the stores before them: none lies between.
         for (uint k = 0u; k < BATCH && turn > 0u; ++k) {
-            if (span_item(index, turn - 1u, k) >= g.sizes.x) continue;
+            if (span_item(index, turn - 1u, k) >= g.count) continue;
             uint cell = cells[span_room(turn - 1u, k)];
             ranks[k] = ATOMIC_ADD_U32(counts[2u * cell], 1u);
-            uint slot = cell * g.sizes.z + min(ranks[k], g.sizes.z - 1u);
+            uint slot = cell * g.capacity + min(ranks[k], g.capacity - 1u);
             PREFETCH(slots[slot]);
             PREFETCH(keys[slot]);
         }
         for (uint k = 0u; k < BATCH && turn > 0u; ++k) {
             uint i = span_item(index, turn - 1u, k);
-            if (i >= g.sizes.x) continue;
+            if (i >= g.count) continue;
             uvec4 place = photons[i].place;
             uint cell = cells[span_room(turn - 1u, k)];
-            if (ranks[k] < g.sizes.z) {
-                uint slot = cell * g.sizes.z + ranks[k];
+            if (ranks[k] < g.capacity) {
+                uint slot = cell * g.capacity + ranks[k];
                 slots[slot] = uvec4(place.x, place.y, place.z, i);
                 keys[slot] = place.w;
-            } else if (g.sizes.w != 0u) {
+            } else if (g.option != 0u) {
                 ATOMIC_ADD_U32(dropped[0], 1u);
             } else {
                 nodes[i] = uvec4(place.w, ATOMIC_EXCHANGE_U32(counts[2u * cell + 1u], i + 1u), 0u, 0u);

@@ -84,8 +84,7 @@ class CpuBuffer final : public Buffer {
 
 class CpuKernel final : public Kernel {
  public:
-    CpuKernel(std::string_view file, CpuKernelFunction run) : file_(file), run_(run) {}
-    std::string file_;
+    CpuKernel(std::string_view file, CpuKernelFunction run) : Kernel(file), run_(run) {}
     CpuKernelFunction run_;
 };
 
@@ -134,14 +133,15 @@ class CpuDevice final : public Device {
         return std::make_shared<CpuKernel>(file, find_cpu_kernel(file, tracer_, effects));
     }
 
-    void run(const Kernel& kernel, const DeviceScene* scene, std::span<const BufferHandle> buffers, uint32_t begin,
+    void run(const Kernel& kernel, const DeviceScene* scene, std::span<const NamedBuffer> buffers, uint32_t begin,
              uint32_t count) override {
+        const CpuKernel& cpu_kernel = static_cast<const CpuKernel&>(kernel);
+        const std::vector<BufferHandle> bound = cpu_kernel.bind(buffers);
         if (count == 0) return;
         const auto start = Clock::now();
-        const CpuKernel& cpu_kernel = static_cast<const CpuKernel&>(kernel);
-        std::array<void*, kMaxKernelBuffers> pointers{};
-        for (size_t i = 0; i < buffers.size(); ++i)
-            pointers.at(i) = buffers[i] ? static_cast<CpuBuffer&>(*buffers[i]).data() : nullptr;
+        std::vector<void*> pointers(bound.size());
+        for (size_t i = 0; i < bound.size(); ++i)
+            pointers[i] = bound[i] ? static_cast<CpuBuffer&>(*bound[i]).data() : nullptr;
         static void* const kNoScene[CpuScene::kBufferCount] = {};
         const CpuScene* cpu_scene = static_cast<const CpuScene*>(scene);
         uint32_t unfinished = 0;
@@ -165,11 +165,11 @@ class CpuDevice final : public Device {
                 },
                 tbb::simple_partitioner{});
         });
-        statistics_.kernel_s[cpu_kernel.file_] += seconds_since(start);
+        statistics_.kernel_s[cpu_kernel.file()] += seconds_since(start);
         if (unfinished)
             throw UnfinishedError(
                 fmt::format("error: kernel {} could not finish a loop within its bound; the image would be wrong",
-                            cpu_kernel.file_));
+                            cpu_kernel.file()));
     }
 
     DeviceStatistics statistics() const override {
@@ -180,7 +180,6 @@ class CpuDevice final : public Device {
     }
 
  private:
-    static constexpr size_t kMaxKernelBuffers = 32;
     CpuTracerKind tracer_;
     std::shared_ptr<MemoryMeter> meter_;
     unsigned threads_ = 1;

@@ -13,7 +13,7 @@ namespace {
 template <EffectSet kEffects>
 struct PrimitiveKernel {
     void* const* scene_buffers_;
-    void* const* kernel_buffers_;
+    KernelBufferTable kernel_buffers_;
     const CpuTracer* tracer_;
     uint* unfinished_;
 #include "core/kernel/scene.h"
@@ -24,7 +24,7 @@ struct PrimitiveKernel {
 
 bool primitive_hit(void* const* scene_buffers, uint32_t geometry, uint32_t primitive, const float origin[3],
                    const float direction[3], float t_max, float& t) {
-    kernel::PrimitiveKernel<kernel::kAllEffects> code{scene_buffers, nullptr, nullptr, nullptr};
+    kernel::PrimitiveKernel<kernel::kAllEffects> code{scene_buffers, {}, nullptr, nullptr};
     const glm::vec3 o(origin[0], origin[1], origin[2]), d(direction[0], direction[1], direction[2]);
     if (code.geometries[geometry].data.x == kernel::GEOMETRY_BILINEAR) {
         glm::vec2 uv;

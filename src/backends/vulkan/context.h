@@ -67,7 +67,7 @@ class Context {
     uint32_t memory_type(uint32_t allowed, vk::MemoryPropertyFlags wanted, vk::MemoryPropertyFlags liked = {}) const;
     // Throws MachineError with what the validation layers said since the last call, if anything.
     void check_validation();
-    // Records with `record(command_buffer)`, submits, waits.
+    // Has `record` record commands, submits them, and waits.
     template <typename Record>
     void submit(Record&& record) {
         vk::raii::CommandBuffers buffers(device, {*command_pool, vk::CommandBufferLevel::ePrimary, 1});

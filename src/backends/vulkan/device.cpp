@@ -125,15 +125,16 @@ class VulkanDevice final : public Device {
         return kernel;
     }
 
-    void run(const Kernel& kernel, const DeviceScene* scene, std::span<const BufferHandle> buffers, uint32_t begin,
+    void run(const Kernel& kernel, const DeviceScene* scene, std::span<const NamedBuffer> buffers, uint32_t begin,
              uint32_t count) override {
         const auto& vulkan_kernel = dynamic_cast<const VulkanKernel&>(kernel);
         if (!scene && vulkan_kernel.uses_scene())
             throw std::logic_error(fmt::format("kernel {} needs a scene", vulkan_kernel.file()));
-        std::vector<KernelBinding> handles(buffers.size());
-        for (size_t i = 0; i < buffers.size(); ++i) {
-            if (!buffers[i]) continue;
-            const auto& buffer = dynamic_cast<const VulkanBuffer&>(*buffers[i]);
+        const std::vector<BufferHandle> bound = vulkan_kernel.bind(buffers);
+        std::vector<KernelBinding> handles(bound.size());
+        for (size_t i = 0; i < bound.size(); ++i) {
+            if (!bound[i]) continue;
+            const auto& buffer = dynamic_cast<const VulkanBuffer&>(*bound[i]);
             handles[i] = buffer.binding();
             if (buffer.boxes) handles[i].structure = buffer.boxes->top_level();
         }

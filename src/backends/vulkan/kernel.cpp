@@ -15,12 +15,20 @@ namespace {
 constexpr double kDispatchSeconds = 0.1;  // aimed at; watchdogs trip at two seconds and more
 constexpr uint32_t kFirstChunk = 4096;    // indices of the first dispatch, when nothing is known yet
 
+// The buffers of set 1 that the module uses.
+std::vector<KernelBuffer> named_buffers(const Spirv& spirv) {
+    std::vector<KernelBuffer> buffers;
+    for (const ShaderBinding& binding : used_bindings(spirv))
+        if (binding.set == 1) buffers.push_back({binding.binding, binding.name, 0});
+    return buffers;
+}
+
 }  // namespace
 
-VulkanKernel::VulkanKernel(std::shared_ptr<Context> context, std::string file, CompiledShader shader,
+VulkanKernel::VulkanKernel(std::shared_ptr<Context> context, const std::string& file, CompiledShader shader,
                            uint32_t local_size)
-    : context_(std::move(context)),
-      file_(std::move(file)),
+    : Kernel(file, named_buffers(shader.spirv)),
+      context_(std::move(context)),
       shader_(std::move(shader)),
       local_size_(local_size),
       bindings_(used_bindings(shader_.spirv)) {}
@@ -44,16 +52,16 @@ KernelPipeline& VulkanKernel::pipeline(const SceneBindings& scene, std::span<con
         if (binding.set == 0 && binding.binding < scene.buffers.size()) given[i] = scene.buffers[binding.binding];
         if (binding.set == 0 && binding.acceleration_structure) given[i].structure = scene.top_level;
         if (binding.acceleration_structure ? !given[i].structure : !given[i].buffer)
-            throw std::logic_error(fmt::format("kernel {} uses set {}, binding {}, which run() was not given", file_,
+            throw std::logic_error(fmt::format("kernel {} uses set {}, binding {}, which run() was not given", file(),
                                                binding.set, binding.binding));
         addressed[i] = !binding.acceleration_structure && given[i].address != 0;
     }
     std::unique_ptr<KernelPipeline>& kept = pipelines_[addressed];
     const bool is_new = !kept;
     std::optional<CompileNotice> notice;
-    if (is_new && tell) notice.emplace(file_);
+    if (is_new && tell) notice.emplace(file());
     if (is_new)
-        kept = std::make_unique<KernelPipeline>(context_, file_, shader_.spirv, bindings_, addressed, local_size_);
+        kept = std::make_unique<KernelPipeline>(context_, file(), shader_.spirv, bindings_, addressed, local_size_);
     kept->bind(given);
     if (is_new) kept->dispatch(0, 0);  // some drivers (lavapipe) compile at the first dispatch
     return *kept;

@@ -19,7 +19,7 @@ struct SceneBindings {
 
 class VulkanKernel final : public Kernel {
  public:
-    VulkanKernel(std::shared_ptr<Context> context, std::string file, CompiledShader shader, uint32_t local_size);
+    VulkanKernel(std::shared_ptr<Context> context, const std::string& file, CompiledShader shader, uint32_t local_size);
 
     struct Spent {
         double compile_s = 0, kernel_s = 0;  // the latter on the device
@@ -31,7 +31,6 @@ class VulkanKernel final : public Kernel {
     // Makes the pipeline for buffers that are all bound; `anything` stands in for each.
     void prepare(const SceneBindings& scene, vk::Buffer anything) const;
 
-    const std::string& file() const { return file_; }
     size_t spirv_bytes() const { return shader_.spirv.size() * sizeof(uint32_t); }
     bool from_cache() const { return shader_.from_cache; }
     bool uses_acceleration_structure() const;
@@ -42,7 +41,6 @@ class VulkanKernel final : public Kernel {
     KernelPipeline& pipeline(const SceneBindings& scene, std::span<const KernelBinding> buffers, bool tell) const;
 
     std::shared_ptr<Context> context_;
-    std::string file_;
     CompiledShader shader_;
     uint32_t local_size_ = 64;
     std::vector<ShaderBinding> bindings_;

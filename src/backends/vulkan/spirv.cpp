@@ -87,8 +87,10 @@ std::vector<ShaderBinding> used_bindings(const Spirv& spirv) {
     std::map<uint32_t, uint32_t> pointees;        // pointer type -> type
     std::set<uint32_t> structures, used;          // acceleration structure types; ids that functions mention
     std::map<uint32_t, uint32_t> variables;       // variable -> pointer type
+    std::map<uint32_t, std::string> names;
     bool in_function = false;
     for_each_instruction(spirv, [&](spv::Op op, const uint32_t* words, uint32_t count) {
+        if (op == spv::OpName) names[words[1]] = reinterpret_cast<const char*>(words + 2);
         if (op == spv::OpDecorate && count == 4 && words[2] == spv::DecorationDescriptorSet) sets[words[1]] = words[3];
         if (op == spv::OpDecorate && count == 4 && words[2] == spv::DecorationBinding) bindings[words[1]] = words[3];
         if (op == spv::OpTypePointer) pointees[words[1]] = words[3];
@@ -101,7 +103,12 @@ std::vector<ShaderBinding> used_bindings(const Spirv& spirv) {
     std::vector<ShaderBinding> result;
     for (const auto& [variable, type] : variables) {
         if (!bindings.count(variable) || !used.count(variable)) continue;
-        result.push_back({sets[variable], bindings[variable], structures.count(pointees[type]) != 0});
+        // A buffer's block is NAMEBlock (prelude.h), and has no name of its own.
+        const bool structure = structures.count(pointees[type]) != 0;
+        std::string name = structure ? names[variable] : names[pointees[type]];
+        constexpr std::string_view kBlock = "Block";
+        if (name.ends_with(kBlock)) name.resize(name.size() - kBlock.size());
+        result.push_back({sets[variable], bindings[variable], structure, std::move(name)});
     }
     std::sort(result.begin(), result.end(), [](const ShaderBinding& a, const ShaderBinding& b) {
         return std::tie(a.set, a.binding) < std::tie(b.set, b.binding);

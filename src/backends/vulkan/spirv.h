@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace lampyris::vulkan {
@@ -39,6 +40,7 @@ Spirv exact_arithmetic(const Spirv& spirv, bool flush_denormals);
 struct ShaderBinding {
     uint32_t set = 0, binding = 0;
     bool acceleration_structure = false;  // otherwise a storage buffer
+    std::string name;                     // what the kernel calls it
     bool operator==(const ShaderBinding&) const = default;
 };
 // The bindings that the module's functions use, in order of set and binding.

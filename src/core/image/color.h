@@ -1,4 +1,4 @@
-// From scene-linear light to what a display shows, by OpenColorIO and a configuration of our own (color_config.cpp).
+// From scene-linear light to what a display shows, by OpenColorIO and a configuration of our own (color_config.h).
 //
 // The configuration is built in, and the OCIO environment variable is not looked at: the same file and options make the
 // same picture on every machine.

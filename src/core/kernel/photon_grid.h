@@ -26,7 +26,7 @@ FN uint cell_hash(uint row, uint x) { return hash32(row + x * 0x85ebca77u); }
 // The table's entry: the product's high word, which needs no division and takes any size.
 FN uint hashed_entry(uint hash, uint entries) { return mul_high(hash, entries); }
 FN uint grid_entry(IN(PhotonGrid) g, uvec3 cell) {
-    return hashed_entry(cell_hash(row_hash(cell.y, cell.z, g.resolution.w), cell.x), g.sizes.y);
+    return hashed_entry(cell_hash(row_hash(cell.y, cell.z, g.resolution.w), cell.x), g.entries);
 }
 
 #endif

@@ -13,7 +13,10 @@ struct PhotonRecord {
 struct PhotonGrid {
     vec4 origin;       // corner of cell (0, 0, 0); w: 1 / side of a cell
     uvec4 resolution;  // cells along x, y, z; w: seed of the hash
-    uvec4 sizes;       // x: photons, y: entries of the table; z, w: the structure's own
+    uint count;        // of photons
+    uint entries;      // of the structure's table
+    uint capacity;     // photons that an entry has room for, in structures that have a limit
+    uint option;       // the structure's own
 };
 // Coordinates of cells stay below it, so that a float tells them apart.
 CONST uint GRID_MAX_CELLS = 8388608u;

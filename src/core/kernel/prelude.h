@@ -21,13 +21,14 @@
 #else
 #define FN inline
 #endif
-// Buffers of the scene (set 0) and of the kernel (set 1): `scene_buffers_` and `kernel_buffers_` are the instance's two tables.
+// Buffers of the scene (set 0) and of the kernel (set 1): `scene_buffers_` and `kernel_buffers_` are the instance's two tables. The
+// latter hears each buffer's name and the size of its elements, for who runs the kernel names what it gives.
 #define SCENE_RO(binding_, T, name) const T* __restrict name = static_cast<const T*>(scene_buffers_[binding_]);
 // An array of pairs of vec4, which READ_PAIR reads as a VecPair at once (see below).
 #define SCENE_RO_PAIRS(binding_, name) SCENE_RO(binding_, VecPair, name)
 #define READ_PAIR(name, i) name[i]
-#define BUFFER_RO(binding_, T, name) const T* __restrict name = static_cast<const T*>(kernel_buffers_[binding_]);
-#define BUFFER_RW(binding_, T, name) T* __restrict name = static_cast<T*>(kernel_buffers_[binding_]);
+#define BUFFER_RO(binding_, T, name) const T* __restrict name = static_cast<const T*>(kernel_buffers_.at(binding_, #name, sizeof(T)));
+#define BUFFER_RW(binding_, T, name) T* __restrict name = static_cast<T*>(kernel_buffers_.at(binding_, #name, sizeof(T)));
 #define HAS(effect) ((kEffects & (effect)) != 0u)
 #define EFFECTS_LOW(effects) uint(effects)
 #define EFFECTS_HIGH(effects) uint((effects) >> 32u)

@@ -46,7 +46,7 @@ class TextureBuilder {
 
     // ---- For texture plugins (texture_plugin.h) ----
 
-    // The program of an operand. Its image operations hold an index of image_request until they are emitted.
+    // The program of an operand. Its image operations hold an index of request_image until they are emitted.
     TextureProgram operand(ParameterReader& reader, std::string_view name, float absent, bool is_spectrum);
     uint32_t request_image(ImageRequest request);
     BuildContext& context() { return context_; }

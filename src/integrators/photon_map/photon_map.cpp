@@ -118,10 +118,12 @@ class PhotonMapRendering {
     }
 
     PhotonConsumer consumer(const Lookups& lookups) const {
-        return {params_.nearest > 0 ? kNearest : sppm_files::kConsumer,
+        const bool nearest = params_.nearest > 0;
+        const NamedBuffer third = nearest ? NamedBuffer{"photon_map", own_params_} : NamedBuffer{"biases", biases_};
+        return {nearest ? kNearest : sppm_files::kConsumer,
                 session_.scene.effects.mask(),
                 session_.device_scene.get(),
-                {lookups.hits, lookups.gathered, params_.nearest > 0 ? own_params_ : biases_}};
+                {{"hits", lookups.hits}, {"gathered", lookups.gathered}, third}};
     }
 
     void trace_photons() {
@@ -161,7 +163,12 @@ class PhotonMapRendering {
         pass_buffer_->upload(&record, sizeof record);
         set_window(uint32_t(pass));
         run(sppm_files::kEye, *eye_, "eye_pass",
-            std::array{window_, hit_params_, session_.film.buffer(), hits_.hits, hits_.queries, pass_buffer_});
+            {{"window", window_},
+             {"params", hit_params_},
+             {"film", session_.film.buffer()},
+             {"hits", hits_.hits},
+             {"queries", hits_.queries},
+             {"passes", pass_buffer_}});
         give_radii(hits_, hit_params_, "eye_pass");
         if (params_.gather == 0) {
             map_->gather(hits_.queries, pixels_, hit_radius_, pass);
@@ -171,20 +178,37 @@ class PhotonMapRendering {
         }
         set_window(uint32_t(pass));
         run(sppm_files::kResolve, *resolve_, "resolve",
-            std::array{window_, hit_params_, session_.film.buffer(), pass_buffer_, hits_.hits, hits_.queries,
-                       hits_.gathered, statistics_, biases_, film_bias_});
+            {{"window", window_},
+             {"params", hit_params_},
+             {"film", session_.film.buffer()},
+             {"passes", pass_buffer_},
+             {"hits", hits_.hits},
+             {"queries", hits_.queries},
+             {"gathered", hits_.gathered},
+             {"statistics", statistics_},
+             {"biases", biases_},
+             {"film_bias", film_bias_}});
     }
 
     // Of every pixel's hit point: as many look-ups at once as there are pixels, whatever `gather` is.
     void one_gather_ray(uint64_t pass, uint32_t ray) {
         set_window(uint32_t(pass) * gather_rays() + ray);
         run(kRays, *rays_, "final_gather",
-            std::array{window_, map_params_, session_.film.buffer(), hits_.hits, hits_.queries, ends_->hits,
-                       ends_->queries});
+            {{"window", window_},
+             {"params", map_params_},
+             {"film", session_.film.buffer()},
+             {"hits", hits_.hits},
+             {"places", hits_.queries},
+             {"ends", ends_->hits},
+             {"queries", ends_->queries}});
         give_radii(*ends_, map_params_, "final_gather");
         map_->gather(ends_->queries, pixels_, map_radius_, pass);
         run(kAdd, *add_, "final_gather",
-            std::array{own_params_, ends_->hits, ends_->queries, ends_->gathered, hits_.hits});
+            {{"params", own_params_},
+             {"ends", ends_->hits},
+             {"queries", ends_->queries},
+             {"gathered", ends_->gathered},
+             {"hits", hits_.hits}});
     }
 
     void set_window(uint32_t sample) {
@@ -195,12 +219,17 @@ class PhotonMapRendering {
     // Also clears what was gathered.
     void give_radii(const Lookups& lookups, const BufferHandle& parameters, const char* phase) {
         run(sppm_files::kRadius, *radius_, phase,
-            std::array{parameters, pass_buffer_, lookups.hits, lookups.queries, statistics_, lookups.gathered,
-                       counters_, biases_});
+            {{"params", parameters},
+             {"passes", pass_buffer_},
+             {"hits", lookups.hits},
+             {"queries", lookups.queries},
+             {"statistics", statistics_},
+             {"gathered", lookups.gathered},
+             {"counters", counters_},
+             {"biases", biases_}});
     }
 
-    template <size_t n>
-    void run(const char* file, const Kernel& kernel, const char* phase, const std::array<BufferHandle, n>& buffers) {
+    void run(const char* file, const Kernel& kernel, const char* phase, std::initializer_list<NamedBuffer> buffers) {
         run_in_phase(session_, file, kernel, phase, buffers, pixels_);
     }
 

@@ -48,7 +48,8 @@ void StoredPhotons::trace(const BufferHandle& parameters) {
         arguments->upload(&pass_, sizeof pass_);
         counters->fill_zero();
         run_in_phase(session_, sppm_files::kPhotons, *kernel_, "photon_tracing",
-                     std::array{arguments, parameters, store_, counters}, paths_);
+                     {{"passes", arguments}, {"params", parameters}, {"photons", store_}, {"counters", counters}},
+                     paths_);
         const SppmCounters found = download_sppm_counters(*counters);
         stored_ = found[kernel::SPPM_STORED];
         session_.photons.rays += found[kernel::SPPM_RAYS];

@@ -24,9 +24,9 @@ float from_ordered_bits(uint32_t bits) {
 }  // namespace
 
 void run_in_phase(RenderSession& session, const char* file, const Kernel& kernel, const char* phase,
-                  std::span<const BufferHandle> buffers, uint32_t count) {
+                  std::initializer_list<NamedBuffer> buffers, uint32_t count) {
     const double before = kernel_seconds(session.device, file);
-    session.device.run(kernel, session.device_scene.get(), buffers, 0, count);
+    session.device.run(kernel, session.device_scene.get(), {buffers.begin(), buffers.size()}, 0, count);
     session.add_phase(phase, kernel_seconds(session.device, file) - before);
 }
 

@@ -24,7 +24,7 @@ using SppmCounters = std::array<uint32_t, kernel::SPPM_COUNTERS>;
 
 // Runs a kernel over [0, count), and adds what it took (by timestamps, on Vulkan) to a phase. `file` is the kernel's.
 void run_in_phase(RenderSession& session, const char* file, const Kernel& kernel, const char* phase,
-                  std::span<const BufferHandle> buffers, uint32_t count);
+                  std::initializer_list<NamedBuffer> buffers, uint32_t count);
 
 SppmCounters download_sppm_counters(const Buffer& counters);
 

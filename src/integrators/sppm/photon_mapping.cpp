@@ -67,7 +67,10 @@ class PhotonMapping {
         film_bias_->fill_zero();
         // A structure over the hit points hands over sums, which say nothing of how flux varies within a disk.
         if (!map_->capabilities().sums_only) session.film.attach_bias(film_bias_, double(params.confidence));
-        consumer_ = {sppm_files::kConsumer, effects, session.device_scene.get(), {hits_, gathered_, biases_}};
+        consumer_ = {sppm_files::kConsumer,
+                     effects,
+                     session.device_scene.get(),
+                     {{"hits", hits_}, {"gathered", gathered_}, {"biases", biases_}}};
         map_->prepare(consumer_);
     }
 
@@ -212,29 +215,56 @@ class PhotonMapping {
 
     void run_eye(uint32_t count) {
         run(sppm_files::kEye, *eye_, "eye_pass",
-            std::array{window_, eye_params_buffer_, session_.film.buffer(), hits_, queries_, pass_buffer_}, count);
+            {{"window", window_},
+             {"params", eye_params_buffer_},
+             {"film", session_.film.buffer()},
+             {"hits", hits_},
+             {"queries", queries_},
+             {"passes", pass_buffer_}},
+            count);
     }
     void run_direct(uint32_t count) {
         run(sppm_files::kDirect, *direct_, "eye_pass",
-            std::array{window_, pass_buffer_, session_.film.buffer(), hits_, queries_, ways_}, count);
+            {{"window", window_},
+             {"passes", pass_buffer_},
+             {"film", session_.film.buffer()},
+             {"hits", hits_},
+             {"queries", queries_},
+             {"ways", ways_}},
+            count);
     }
     void run_radius(uint32_t count) {
         run(sppm_files::kRadius, *radius_, "eye_pass",
-            std::array{params_buffer_, pass_buffer_, hits_, queries_, statistics_, gathered_, counters_, biases_},
+            {{"params", params_buffer_},
+             {"passes", pass_buffer_},
+             {"hits", hits_},
+             {"queries", queries_},
+             {"statistics", statistics_},
+             {"gathered", gathered_},
+             {"counters", counters_},
+             {"biases", biases_}},
             count);
     }
     void run_photons(uint32_t count) {
         run(sppm_files::kPhotons, *photons_, "photon_tracing",
-            std::array{pass_buffer_, params_buffer_, store_, counters_}, count);
+            {{"passes", pass_buffer_}, {"params", params_buffer_}, {"photons", store_}, {"counters", counters_}},
+            count);
     }
     void run_resolve(uint32_t count) {
         run(sppm_files::kResolve, *resolve_, "resolve",
-            std::array{window_, params_buffer_, session_.film.buffer(), pass_buffer_, hits_, queries_, gathered_,
-                       statistics_, biases_, film_bias_},
+            {{"window", window_},
+             {"params", params_buffer_},
+             {"film", session_.film.buffer()},
+             {"passes", pass_buffer_},
+             {"hits", hits_},
+             {"queries", queries_},
+             {"gathered", gathered_},
+             {"statistics", statistics_},
+             {"biases", biases_},
+             {"film_bias", film_bias_}},
             count);
     }
-    template <size_t n>
-    void run(const char* file, const Kernel& kernel, const char* phase, const std::array<BufferHandle, n>& buffers,
+    void run(const char* file, const Kernel& kernel, const char* phase, std::initializer_list<NamedBuffer> buffers,
              uint32_t count) {
         run_in_phase(session_, file, kernel, phase, buffers, count);
     }
