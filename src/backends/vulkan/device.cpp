@@ -109,6 +109,7 @@ class VulkanDevice final : public Device {
         const CompileNotice notice(file);
         ShaderOptions options = shader_options_;
         options.effects = specialise_ ? effects : kernel::kAllEffects;
+        options.names = !find_kernel_buffers(file).has_value();
         CompiledShader shader = compile_shader(file, options, cache_);
         std::shared_ptr<VulkanKernel> kernel;
         guarded(fmt::format("compiling kernel {}", file), [&] {

@@ -103,6 +103,7 @@ ContentHash key_of(const std::string& source, const ShaderOptions& options) {
                          spvSoftwareVersionString()));
     hash.add(fmt::format("precise {} exact {} {} optimize {} inlined {}", options.precise, options.exact,
                          options.flush_denormals, options.optimize, options.inlined));
+    if (options.names) hash.add("names");
     std::set<std::string_view> seen;
     add_text(hash, source, seen);
     return hash;
@@ -143,7 +144,7 @@ Spirv compile_glsl(std::string_view kernel_file, const std::string& source, bool
     return spirv;
 }
 
-Spirv optimize(std::string_view kernel_file, const Spirv& spirv, bool inlined) {
+Spirv optimize(std::string_view kernel_file, const Spirv& spirv, const ShaderOptions& wanted) {
     spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_2);
     std::string log;
     optimizer.SetMessageConsumer(
@@ -151,12 +152,12 @@ Spirv optimize(std::string_view kernel_file, const Spirv& spirv, bool inlined) {
             if (level <= SPV_MSG_WARNING) log += fmt::format("{}\n", message);
         });
     // First drop names and what HAS() switches off: inlining it all before dropping it takes nine times as long.
-    optimizer.RegisterPass(spvtools::CreateStripDebugInfoPass())
-        .RegisterPass(spvtools::CreateCCPPass())
+    if (!wanted.names) optimizer.RegisterPass(spvtools::CreateStripDebugInfoPass());
+    optimizer.RegisterPass(spvtools::CreateCCPPass())
         .RegisterPass(spvtools::CreateDeadBranchElimPass())
         .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
         .RegisterPass(spvtools::CreateAggressiveDCEPass(false, true));
-    if (inlined) {
+    if (wanted.inlined) {
         optimizer.RegisterPerformancePasses();
         optimizer.RegisterPass(spvtools::CreateAggressiveDCEPass(false, true));
     }
@@ -208,7 +209,7 @@ CompiledShader compile_shader(std::string_view kernel_file, const ShaderOptions&
     Spirv spirv = compile_glsl(kernel_file, source, options.exact);  // nothing calls exact.glsl yet
     if (options.exact) spirv = exact_arithmetic(spirv, options.flush_denormals);
     if (options.precise) spirv = forbid_contraction(spirv);
-    if (options.optimize) spirv = optimize(kernel_file, spirv, options.inlined);
+    if (options.optimize) spirv = optimize(kernel_file, spirv, options);
     cache.store(key, spirv);
     return {std::move(spirv), false};
 }

@@ -19,6 +19,7 @@ struct ShaderOptions {
     bool inlined = true;           // and inline and simplify the rest, which every driver does once more
     bool ray_query = false;        // trace with VK_KHR_ray_query instead of the BVH in the shader
     bool wide_reads = false;       // READ_PAIR by words of 64 bits (prelude.h)
+    bool names = false;            // keep them: where there is no C++ build that says what its buffers are called
     uint32_t local_size = 64;
 };
 
