@@ -92,7 +92,7 @@ TEST(PhotonMap, NoPhotonsAndNoQueriesAreNoError) {
             PhotonSet set = upload_case(*device, make_photon_case("random", 10, 10));
             set.count = 0;
             for (const CollectResult& result : collect(*device, *map, set)) EXPECT_EQ(result.found.x, 0u);
-            map->gather({kCollect, 0, nullptr, {set.queries}}, set.queries, 0, 0);
+            map->gather({kCollect, 0, nullptr, {{"results", set.queries}}}, set.queries, 0, 0);
         }
     }
 }
