@@ -3,7 +3,6 @@
 #include "commands/console.h"
 #include "commands/progress.h"
 #include "core/kernel_registry.h"
-#include "core/watch.h"
 
 #include <unistd.h>
 
@@ -27,13 +26,9 @@ std::string short_name(std::string_view kernel) {
 
 }  // namespace
 
-CompileDisplay::CompileDisplay(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {
-    if (!quiet_) set_compile_listener([this](std::string_view kernel, bool begins) { heard(kernel, begins); });
-}
+CompileDisplay::CompileDisplay(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
 
 CompileDisplay::~CompileDisplay() {
-    if (quiet_) return;
-    set_compile_listener({});
     if (!thread_.joinable()) return;
     {
         const std::lock_guard lock(mutex_);
@@ -44,6 +39,7 @@ CompileDisplay::~CompileDisplay() {
 }
 
 void CompileDisplay::heard(std::string_view kernel, bool begins) {
+    if (quiet_) return;
     const std::lock_guard lock(mutex_);
     if (begins) {
         kernel_ = short_name(kernel);

@@ -10,7 +10,7 @@
 
 namespace lampyris {
 
-// Listens while it lives (core/watch.h). What takes less than two seconds is not mentioned.
+// What takes less than two seconds is not mentioned.
 class CompileDisplay {
  public:
     explicit CompileDisplay(bool quiet);
@@ -18,9 +18,10 @@ class CompileDisplay {
     CompileDisplay(const CompileDisplay&) = delete;
     CompileDisplay& operator=(const CompileDisplay&) = delete;
 
+    void heard(std::string_view kernel, bool begins);  // as Watch::compiling
+
  private:
     using Clock = std::chrono::steady_clock;
-    void heard(std::string_view kernel, bool begins);
     void watch();
 
     const bool quiet_, terminal_;

@@ -151,7 +151,7 @@ void print_json(const LoadedScene& loaded) {
 }
 
 int describe(const DescribeOptions& options) {
-    LoadedScene loaded = load_scene(options.scene, {}, options.skip_unsupported);
+    LoadedScene loaded = load_scene(SceneSource::of_file(options.scene), {}, options.skip_unsupported);
     for (std::string& note : integrator_notes(loaded.settings.integrator, loaded.scene, *loaded.sources))
         loaded.scene.notes.push_back(std::move(note));
     for (const std::string& warning : loaded.warnings) tell("{}\n", warning);

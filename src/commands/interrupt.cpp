@@ -2,7 +2,6 @@
 
 #include "commands/console.h"
 #include "core/error.h"
-#include "core/watch.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -27,6 +26,7 @@ int wake[2] = {-1, -1};
 std::atomic<State> state{State::kNothingDone};
 std::mutex mutex;
 std::vector<std::string> outputs;
+Watch* rendering = nullptr;
 std::thread watcher;
 
 constexpr char kStop = 0;
@@ -67,7 +67,7 @@ void watch() {
         if (asked) end("interrupted again: ended at once");
         asked = true;
         tell("interrupted: what is done is written\n");
-        request_interrupt();
+        rendering->interrupt();
     }
 }
 
@@ -78,8 +78,9 @@ bool is_ignored(int signal) {
 
 }  // namespace
 
-InterruptWatch::InterruptWatch(std::vector<std::string> names) {
+InterruptWatch::InterruptWatch(std::vector<std::string> names, Watch& watch_of_rendering) {
     set_outputs(std::move(names));
+    rendering = &watch_of_rendering;
     if (::pipe2(wake, O_CLOEXEC) != 0) return;  // signals then do what they do without us
     watcher = std::thread(watch);
     std::signal(SIGINT, &on_interrupt);

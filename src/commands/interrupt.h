@@ -1,6 +1,8 @@
 // Ctrl-C, SIGTERM and a hangup while a scene is rendered.
 #pragma once
 
+#include "core/watch.h"
+
 #include <string>
 #include <vector>
 
@@ -11,7 +13,7 @@ namespace lampyris {
 // written; the second one ends the program.
 class InterruptWatch {
  public:
-    explicit InterruptWatch(std::vector<std::string> outputs);
+    InterruptWatch(std::vector<std::string> outputs, Watch& rendering);
     ~InterruptWatch();
     InterruptWatch(const InterruptWatch&) = delete;
     InterruptWatch& operator=(const InterruptWatch&) = delete;

@@ -71,86 +71,69 @@ std::vector<int> parse_integers(const std::string& text, char separator, size_t 
     return numbers;
 }
 
-std::vector<std::pair<std::string, std::string>> RenderOptions::settings_of(const std::string& section) const {
-    const auto found = sections_.find(section);
-    return found == sections_.end() ? std::vector<std::pair<std::string, std::string>>{} : found->second;
-}
-
 void RenderOptions::finish() {
     load_plugins(plugins);
+    request.scene = SceneSource::of_file(texts.scene);
     if (!texts.resolution.empty()) {
         const std::vector<int> size =
             parse_integers(texts.resolution, 'x', 2, "--resolution", "WIDTHxHEIGHT, for example 640x480");
-        if (std::min(size[0], size[1]) < 1 || std::max(size[0], size[1]) > kLargestSide)
-            throw InputError(
-                fmt::format("error: --resolution {}: sides are 1 to {} pixels", texts.resolution, kLargestSide));
-        build.resolution = {size[0], size[1]};
+        request.build.resolution = {size[0], size[1]};
     }
     if (!texts.crop.empty()) {
         const std::vector<int> c = parse_integers(texts.crop, ',', 4, "--crop", "x0,y0,x1,y1 in pixels");
-        build.crop = {c[0], c[1], c[2], c[3]};
+        request.build.crop = {c[0], c[1], c[2], c[3]};
     }
     if (!texts.replay.empty()) {
         const std::vector<int> r = parse_integers(texts.replay, ',', 3, "--replay", "x,y,pass");
         if (r[2] < 0) throw InputError(fmt::format("error: --replay {}: passes are counted from 0", texts.replay));
-        replay = {r[0], r[1], r[2]};
+        request.replay = {r[0], r[1], r[2]};
     }
+    BudgetLimits& limits = request.limits;
     if (!texts.time.empty()) limits.seconds = parse_duration(texts.time);
-    if (!texts.max_memory.empty()) device.max_memory = parse_size(texts.max_memory);
-    for (const auto& [option, count] : {std::pair{"--spp", texts.spp}, std::pair{"--passes", texts.passes}}) {
-        if (!count) continue;
-        if (*count < 1 || *count > kMostSamples)
+    if (!texts.max_memory.empty()) request.device_options.max_memory = parse_size(texts.max_memory);
+    for (const auto& [option, count] : {std::pair{"--spp", texts.spp}, std::pair{"--passes", texts.passes}})
+        if (count && (*count < 1 || *count > kMostSamples))
             throw InputError(fmt::format("error: {} {}: expected 1 to {}", option, *count, kMostSamples));
-        limits.passes = limits.passes ? std::min(*limits.passes, uint64_t(*count)) : uint64_t(*count);
-    }
-    if (texts.spp) eye_samples = uint32_t(*texts.spp);
+    if (texts.spp) request.samples_per_pixel = uint32_t(*texts.spp);
+    if (texts.passes) limits.passes = uint64_t(*texts.passes);
     if (!std::isfinite(write.exposure)) throw InputError("error: --exposure must be a number of stops");
-    if (texts.target_error) {
-        if (!(*texts.target_error > 0.0)) throw InputError("error: --target-error must be above 0");
-        limits.target_error = texts.target_error;
-    } else if (limits.accept_unstable) {
+    if (limits.accept_unstable && !limits.target_error)
         throw InputError("error: --accept-unstable says how --target-error stops, and there is none");
-    }
     for (const std::string& setting : texts.settings) {
         const size_t dot = setting.find('.'), equals = setting.find('=');
         if (dot == std::string::npos || equals == std::string::npos || dot > equals || dot == 0)
             throw InputError(
                 fmt::format("error: --set {}: write SECTION.KEY=VALUE, for example integrator.maxdepth=12", setting));
         const std::string section = setting.substr(0, dot);
-        if (section != "integrator" && section != "backend")
+        std::string key = setting.substr(dot + 1, equals - dot - 1), value = setting.substr(equals + 1);
+        if (section == "integrator")
+            request.integrator_settings.emplace_back(std::move(key), std::move(value));
+        else if (section == "backend")
+            request.device_options.settings[key] = std::move(value);
+        else
             throw InputError(fmt::format(
                 "error: --set {}: there is no section \"{}\"; sections are integrator, backend", setting, section));
-        sections_[section].emplace_back(setting.substr(dot + 1, equals - dot - 1), setting.substr(equals + 1));
     }
-    for (const auto& [key, value] : settings_of("backend")) device.settings[key] = value;
-    if (!integrator.empty()) integrator_choice = parse_plugin_choice(integrator);
-    for (const auto& setting : settings_of("integrator")) integrator_choice.settings.push_back(setting);
-    // Of all integrators, and for the scene's builder.
-    for (const auto& [key, value] : integrator_choice.settings) {
-        if (key != "media") continue;
-        if (value != "on" && value != "off")
-            throw InputError(fmt::format("error: integrator.media={}: it is on or off", shown(value)));
-        build.media = value == "on";
-    }
-    std::erase_if(integrator_choice.settings, [](const auto& setting) { return setting.first == "media"; });
 }
 
 void add_render_options(CLI::App& command, RenderOptions& o) {
-    command.add_option("SCENE", o.scene, "Scene in pbrt-v4's text format")->required();
+    command.add_option("SCENE", o.texts.scene, "Scene in pbrt-v4's text format")->required();
     command.add_option("-o,--output", o.outputs, "Image to write: .exr, .pfm or .png; may be given several times")
         ->type_name("IMAGE");
-    command.add_option("--integrator", o.integrator, "Integrator in place of the scene's, with parameters")
+    command.add_option("--integrator", o.request.integrator, "Integrator in place of the scene's, with parameters")
         ->type_name("NAME[:key=value,...]");
     command
-        .add_option("--photon-map", o.photon_map, "Photon-query structure of integrators that use one, with parameters")
+        .add_option("--photon-map", o.request.photon_map,
+                    "Photon-query structure of integrators that use one, with parameters")
         ->type_name("NAME[:key=value,...]");
-    command.add_option("--backend", o.backend, "What computes: see `lampyris devices`")
+    command.add_option("--backend", o.request.backend, "What computes: see `lampyris devices`")
         ->capture_default_str()
         ->type_name("NAME");
-    command.add_option("--device", o.device.device, "Number or part of the name of the device")->type_name("N|NAME");
-    command.add_option("--threads", o.device.threads, "Threads of the CPU (default: all)")
+    command.add_option("--device", o.request.device_options.device, "Number or part of the name of the device")
+        ->type_name("N|NAME");
+    command.add_option("--threads", o.request.device_options.threads, "Threads of the CPU (default: all)")
         ->check(CLI::Range(1u, 4096u));
-    command.add_option("--seed", o.seed, "Seed of the random numbers");
+    command.add_option("--seed", o.request.seed, "Seed of the random numbers");
     command.add_option("--resolution", o.texts.resolution, "Size in place of the scene's")->type_name("WxH");
     command.add_option("--crop", o.texts.crop, "Render these pixels only (half-open)")->type_name("x0,y0,x1,y1");
     command
@@ -161,16 +144,16 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
     command.add_option("--time", o.texts.time, "Stop after this much rendering time: 30s, 5min, 2h")
         ->type_name("DURATION");
     command
-        .add_option("--target-error", o.texts.target_error,
+        .add_option("--target-error", o.request.limits.target_error,
                     "Stop when the estimated relMSE is below this and can be trusted")
         ->type_name("E");
-    command.add_flag("--accept-unstable", o.limits.accept_unstable,
+    command.add_flag("--accept-unstable", o.request.limits.accept_unstable,
                      "Let --target-error stop at an estimate that cannot be trusted, too");
-    command.add_option("--reference", o.reference, "Reference image: the statistics tell the error over time")
+    command.add_option("--reference", o.request.reference, "Reference image: the statistics tell the error over time")
         ->type_name("REF.exr");
     command.add_option("--stats", o.statistics_file, "Write what it cost as JSON")->type_name("FILE.json");
     command.add_option("--plugin", o.plugins, "Load a plugin; may be given several times")->type_name("FILE.so");
-    command.add_flag("--skip-unsupported", o.skip_unsupported,
+    command.add_flag("--skip-unsupported", o.request.skip_unsupported,
                      "Leave out what Lampyris does not simulate, and list it");
     command
         .add_option("--max-memory", o.texts.max_memory, "Most memory for buffers and acceleration structures: 512M, 8G")

@@ -23,6 +23,11 @@ class Integrator {
     virtual bool uses_photon_map() const { return false; }
     // Whether passes share one set of eye samples (--spp), and --passes alone counts passes.
     virtual bool fixes_eye_samples() const { return false; }
+    // How fast theory lets the error fall, with the parameters as they are. Photons in radii that stay as they are leave a bias that
+    // no pass takes away.
+    virtual ErrorRate error_rate() const {
+        return uses_photon_map() ? ErrorRate::of_photons(1.0) : ErrorRate::of_samples();
+    }
     // Error that the variance between passes cannot reveal, in a few words: what all passes share. Empty where there is none.
     virtual std::string unseen_error([[maybe_unused]] uint32_t eye_samples) const { return {}; }
 };

@@ -28,7 +28,7 @@ kernel::FilmWindow RenderSession::window(uint32_t first, uint32_t samples) const
 }
 
 uint32_t RenderSession::next_passes() {
-    if (interrupt_requested()) interrupted_ = true;
+    if (current_watch().interrupted()) interrupted_ = true;
     if (interrupted_ || progress_.finished) return 0;
     uint64_t count = 1;
     if (seconds_per_pass_ > 0.0)
@@ -56,7 +56,7 @@ void RenderSession::passes_finished(uint32_t count) {
     if (limits_.passes && progress_.passes >= *limits_.passes) progress_.finished = true;
     // The next pass must fit, or an average of half a pass would always be overdrawn.
     if (limits_.seconds && progress_.wall_s + 0.5 * seconds_per_pass_ >= *limits_.seconds) progress_.finished = true;
-    if (interrupt_requested()) interrupted_ = true;
+    if (current_watch().interrupted()) interrupted_ = true;
     const bool look = progress_.finished || interrupted_ || std::has_single_bit(progress_.passes) ||
                       progress_.wall_s - last_look_s_ >= kLookSeconds;
     if (!look) return;
@@ -73,6 +73,12 @@ void RenderSession::passes_finished(uint32_t count) {
     progress_.target = compare_with_target(summary);
     if (progress_.target == TargetState::kReached) progress_.finished = true;
     if (on_progress) on_progress(progress_, film);
+}
+
+RenderEnd RenderSession::ended() const {
+    if (interrupted_) return RenderEnd::kInterrupted;
+    if (progress_.target == TargetState::kReached) return RenderEnd::kTargetError;
+    return limits_.passes && progress_.passes >= *limits_.passes ? RenderEnd::kPasses : RenderEnd::kTime;
 }
 
 TargetState RenderSession::compare_with_target(const FilmSummary& summary) const {

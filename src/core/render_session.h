@@ -24,6 +24,9 @@ struct BudgetLimits {
     bool accept_unstable = false;        // an estimate that cannot be trusted reaches the target, too
 };
 
+// Why a rendering ended: by which limit, or because it was interrupted (core/watch.h).
+enum class RenderEnd { kPasses, kTime, kTargetError, kInterrupted };
+
 enum class TargetState { kNone, kAbove, kUnknown, kBelowButUnstable, kReached };
 
 // The state of a rendering after some passes; what progress displays and statistics see.
@@ -66,8 +69,8 @@ class RenderSession {
     ErrorRate error_rate = ErrorRate::of_samples();  // what theory says of the integrator
     std::string unseen_error;  // what no variance of its passes shows; makes the estimate unstable
 
-    // How many passes to run next, beginning with number next_pass(): 0 when the budget is spent or the user
-    // interrupts. Slices last a fraction of a second where passes are that short, and end at powers of two.
+    // How many passes to run next, beginning with number next_pass(): 0 when the budget is spent or the rendering is
+    // interrupted. Slices last a fraction of a second where passes are that short, and end at powers of two.
     uint32_t next_passes();
     // To be called after each slice.
     void passes_finished(uint32_t count);
@@ -77,7 +80,7 @@ class RenderSession {
     // The film's part of the image, and so many samples from `first` on, for kernels.
     kernel::FilmWindow window(uint32_t first, uint32_t samples) const;
     const RenderProgress& progress() const { return progress_; }
-    bool interrupted() const { return interrupted_; }
+    RenderEnd ended() const;
     // Cancelled came out of a pass: what is in the film counts, the pass does not.
     void pass_was_cancelled() { interrupted_ = true; }
 

@@ -1,5 +1,7 @@
 #include "core/statistics.h"
 
+#include "core/version.h"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
@@ -41,13 +43,13 @@ Json convergence_json(const std::vector<ConvergencePoint>& points) {
     return array;
 }
 
-Json effects_json(const Scene& scene) {
+Json effects_json(const RunRecord& run) {
     Json array = Json::array();
     for (const EffectInfo& info : known_effects())
-        for (const EffectRequest& request : scene.effects.requests())
+        for (const EffectRequest& request : run.effects)
             if (request.effect == info.effect)
                 array.push_back({{"name", info.name}, {"asked_by", request.asked_by}, {"simulated", true}});
-    for (const std::string& what : scene.unsupported)
+    for (const std::string& what : run.unsupported)
         array.push_back({{"name", what}, {"asked_by", what}, {"simulated", false}});
     return array;
 }
@@ -78,7 +80,7 @@ size_t peak_resident_bytes() {
     return size_t(usage.ru_maxrss) * 1024;
 }
 
-nlohmann::ordered_json statistics_json(const RunRecord& run, const Scene& scene) {
+nlohmann::ordered_json statistics_json(const RunRecord& run) {
     Json phases = Json::object();
     for (const auto& [name, seconds] : run.phases) phases[name] = seconds;
     Json kernels = Json::object();
@@ -89,7 +91,7 @@ nlohmann::ordered_json statistics_json(const RunRecord& run, const Scene& scene)
         {"schema", "lampyris.stats/1"},
         {"version", version()},
         {"scene", run.scene},
-        {"scene_hash", fmt::format("{:016x}", scene.hash)},
+        {"scene_hash", fmt::format("{:016x}", run.scene_hash)},
         {"integrator",
          {{"name", run.integrator},
           {"asked", run.integrator_asked.empty() ? Json(nullptr) : Json(run.integrator_asked)},
@@ -123,14 +125,14 @@ nlohmann::ordered_json statistics_json(const RunRecord& run, const Scene& scene)
         {"peak_memory_bytes", peak_resident_bytes()},
         {"device_memory_bytes", run.device_statistics.peak_memory_bytes},
         {"estimated_error", number(run.progress.estimated_error)},
-        {"effects", effects_json(scene)},
+        {"effects", effects_json(run)},
         {"radius", radius_json(run)},
         {"bucket_load", bucket_load_json(run)},
         {"non_finite_samples", run.film.non_finite},
-        {"unsupported", scene.unsupported},
-        {"notes", scene.notes},
+        {"unsupported", run.unsupported},
+        {"notes", run.notes},
         {"convergence", convergence_json(run.convergence)},
-        {"interrupted", run.interrupted},
+        {"interrupted", run.ended == RenderEnd::kInterrupted},
     };
     add_forecast(result, run.progress.forecast, !run.progress.unstable.empty());
     if (run.progress.target != TargetState::kNone)
@@ -154,10 +156,10 @@ std::string parameters_text(const std::vector<std::pair<std::string, std::string
 
 }  // namespace
 
-std::map<std::string, std::string> image_metadata(const RunRecord& run, const Scene& scene) {
+std::map<std::string, std::string> image_metadata(const RunRecord& run) {
     return {{"lampyris.version", version()},
             {"lampyris.scene", run.scene},
-            {"lampyris.scene_hash", fmt::format("{:016x}", scene.hash)},
+            {"lampyris.scene_hash", fmt::format("{:016x}", run.scene_hash)},
             {"lampyris.integrator", run.integrator},
             {"lampyris.parameters", parameters_text(run.integrator_parameters)},
             {"lampyris.photon_map", run.photon_map.value_or("")},

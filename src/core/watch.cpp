@@ -1,9 +1,6 @@
 #include "core/watch.h"
 
-#include <atomic>
 #include <chrono>
-#include <cstdint>
-#include <utility>
 
 namespace lampyris {
 namespace {
@@ -16,35 +13,32 @@ int64_t now_ns() {
         .count();
 }
 
-std::atomic<int64_t> asked_at{0};  // 0: not asked
-
-CompileListener& compile_listener() {
-    static CompileListener listener;
-    return listener;
+Watch*& watch_of_thread() {
+    static Watch nobody;
+    thread_local Watch* watch = &nobody;
+    return watch;
 }
 
 }  // namespace
 
-void request_interrupt() {
+void Watch::interrupt() {
     int64_t never = 0;
-    asked_at.compare_exchange_strong(never, now_ns());
+    asked_at_.compare_exchange_strong(never, now_ns());
 }
 
-bool interrupt_requested() { return asked_at.load(std::memory_order_relaxed) != 0; }
-
-void check_cancelled() {
-    const int64_t since = asked_at.load(std::memory_order_relaxed);
+void Watch::check_cancelled() const {
+    const int64_t since = asked_at_.load(std::memory_order_relaxed);
     if (since != 0 && now_ns() - since > kPatienceNs) throw Cancelled();
 }
 
-void set_compile_listener(CompileListener listener) { compile_listener() = std::move(listener); }
+Watch& current_watch() { return *watch_of_thread(); }
 
-CompileNotice::CompileNotice(std::string_view kernel) : kernel_(kernel) {
-    if (compile_listener()) compile_listener()(kernel_, true);
-}
+WatchScope::WatchScope(Watch& watch) : outer_(watch_of_thread()) { watch_of_thread() = &watch; }
 
-CompileNotice::~CompileNotice() {
-    if (compile_listener()) compile_listener()(kernel_, false);
-}
+WatchScope::~WatchScope() { watch_of_thread() = outer_; }
+
+CompileNotice::CompileNotice(std::string_view kernel) : kernel_(kernel) { current_watch().compiling(kernel_, true); }
+
+CompileNotice::~CompileNotice() { current_watch().compiling(kernel_, false); }
 
 }  // namespace lampyris

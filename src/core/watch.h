@@ -1,16 +1,33 @@
-// What a program may say to the library while a call lasts, namely that it should end, and hear from it: what takes long.
+// What a program hears of the library while a call lasts, and how it asks the call to end.
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <exception>
-#include <functional>
 #include <string_view>
 
 namespace lampyris {
 
-// Asks a rendering to end: after its slice, or, where that takes longer than a second, in the middle of a kernel's work. It may be
-// asked by any thread, and by a signal handler.
-void request_interrupt();
-bool interrupt_requested();
+class Watch {
+ public:
+    virtual ~Watch() = default;
+
+    // A device begins to compile a kernel, or has done so or failed. A driver does not say how far it is.
+    virtual void compiling([[maybe_unused]] std::string_view kernel, [[maybe_unused]] bool begins) {}
+
+    // Asks the rendering to end: after its slice, or, where that takes longer than a second, in the middle of a kernel's work.
+    // It may be called by any thread, and by a signal handler. Before a rendering begins, it is meant for the next one.
+    void interrupt();
+    // What was asked is done: the next rendering is not meant.
+    void interruption_ends() { asked_at_.store(0, std::memory_order_relaxed); }
+    bool interrupted() const { return asked_at_.load(std::memory_order_relaxed) != 0; }
+    // Throws Cancelled where the rendering was asked to end a second ago. Devices call it between the parts of a kernel's work,
+    // in any thread.
+    void check_cancelled() const;
+
+ private:
+    std::atomic<int64_t> asked_at_{0};  // 0: not asked
+};
 
 // Thrown by Device::run where it leaves work undone. Kernels that render write a pixel at once: the film is as good as before, but
 // some pixels have a sample more than others.
@@ -19,14 +36,22 @@ class Cancelled : public std::exception {
     const char* what() const noexcept override { return "interrupted"; }
 };
 
-// Devices call it between the parts of a kernel's work: throws Cancelled when it is time.
-void check_cancelled();
+// The watch of the call that this thread is in; outside of all, one that does nothing.
+Watch& current_watch();
 
-// Hears when a device begins to compile a kernel, and when it has done so or failed. A driver does not say how far it is.
-using CompileListener = std::function<void(std::string_view kernel, bool begins)>;
-void set_compile_listener(CompileListener listener);
+// Makes a watch this thread's for as long as it lives.
+class WatchScope {
+ public:
+    explicit WatchScope(Watch& watch);
+    ~WatchScope();
+    WatchScope(const WatchScope&) = delete;
+    WatchScope& operator=(const WatchScope&) = delete;
 
-// For devices: tells the listener for as long as it lives.
+ private:
+    Watch* outer_;
+};
+
+// For devices: tells this thread's watch that a kernel is compiled, for as long as it lives.
 class CompileNotice {
  public:
     explicit CompileNotice(std::string_view kernel);

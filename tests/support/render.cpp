@@ -1,11 +1,11 @@
 #include "support/render.h"
 
 #include "core/image/image_io.h"
-#include "core/integrator_choice.h"
 
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <utility>
 
 namespace lampyris::test {
 namespace {
@@ -17,51 +17,53 @@ std::shared_ptr<Device> shared_device(const std::string& backend) {
     return device;
 }
 
-// With seeds from the settings' on, one after the other: the scene is built once.
-std::vector<Rendered> render_description(SceneDescription description, const RenderSettings& settings,
-                                         Diagnostics& diagnostics, uint32_t seeds = 1) {
-    BuildOptions options;
-    options.resolution = settings.resolution;
-    options.crop = settings.crop;
-    BuiltScene built = build_scene(std::move(description), options, diagnostics);
-    if (settings.one_variant && settings.backend == "vulkan") {
-        built.scene.effects.ask(kernel::kAllEffects, "the test");
-        built.scene.record_effects(built.scene.effects.mask());
+class ProgressListener final : public RenderObserver {
+ public:
+    explicit ProgressListener(const RenderSettings& settings) : settings_(settings) {}
+    void progress(const RenderProgress& progress, const Film& film) override {
+        if (settings_.on_progress) settings_.on_progress(progress, film);
     }
-    PluginChoice choice;
-    if (!settings.integrator.empty()) choice = parse_plugin_choice(settings.integrator);
-    const ChosenIntegrator chosen = choose_integrator(built, choice, diagnostics);
-    diagnostics.throw_if_errors();
 
-    DeviceOptions device_options;
-    device_options.threads = settings.threads;
-    device_options.settings = settings.device_settings;
-    std::shared_ptr<Device> device =
-        settings.one_variant ? shared_device(settings.backend) : create_device(settings.backend, device_options);
-    if (settings.wrap) device = settings.wrap(std::move(device));
-    const DeviceSceneHandle device_scene = device->upload(built.scene);
+ private:
+    const RenderSettings& settings_;
+};
+
+RenderRequest request_of(SceneSource scene, const RenderSettings& settings) {
+    RenderRequest request;
+    request.scene = std::move(scene);
+    request.build.resolution = settings.resolution;
+    request.build.crop = settings.crop;
+    request.integrator = settings.integrator;
+    request.photon_map = settings.photon_map;
+    request.sampler = settings.sampler;
+    request.limits.passes = settings.samples;
+    // Of other integrators it would be a limit of the passes.
+    if (settings.eye_samples != 1) request.samples_per_pixel = settings.eye_samples;
+    request.first_pass = settings.first_pass;
+    request.max_slice = settings.slice;
+    if (settings.one_variant && settings.backend == "vulkan") request.effects = kernel::kAllEffects;
+    DeviceOptions options;
+    options.threads = settings.threads;
+    options.settings = settings.device_settings;
+    request.device = settings.one_variant ? shared_device(settings.backend) : create_device(settings.backend, options);
+    if (settings.wrap) request.device = settings.wrap(std::move(request.device));
+    return request;
+}
+
+// With seeds from the settings' on, one after the other: the scene is built once.
+std::vector<Rendered> render_seeds(SceneSource scene, const RenderSettings& settings, uint32_t seeds = 1) {
+    ProgressListener listener(settings);
+    Rendering rendering(request_of(std::move(scene), settings), listener);
     std::vector<Rendered> results;
     for (uint32_t i = 0; i < seeds; ++i) {
-        Film film(*device, built.scene, built.settings.crop);
-        RenderSession session(*device, built.scene, device_scene, film, {settings.samples, {}, {}});
-        session.seed = settings.seed + i;
-        session.eye_samples = settings.eye_samples;
-        session.sampler = settings.sampler.value_or(built.settings.sampler) == "independent"
-                              ? kernel::SAMPLER_INDEPENDENT
-                              : kernel::SAMPLER_SOBOL;
-        session.max_slice = settings.slice;
-        session.on_progress = settings.on_progress;
-        session.photon_map = settings.photon_map;
-        session.start_at(settings.first_pass);
-        chosen.integrator->render(session);
-        film.download();
+        RenderOutcome outcome = rendering.run(settings.seed + i);
         Rendered& result = results.emplace_back();
-        result.image = film.image();
-        result.summary = film.summary();
-        result.pixels = film.pixels();
-        result.scene_samples = built.settings.samples_per_pixel;
-        result.width = result.image.width;
-        result.height = result.image.height;
+        result.summary = outcome.record.film;
+        result.pixels = std::move(outcome.pixels);
+        result.scene_samples = rendering.settings().samples_per_pixel;
+        result.width = outcome.image.width;
+        result.height = outcome.image.height;
+        result.image = std::move(outcome.image);
     }
     return results;
 }
@@ -88,23 +90,15 @@ double Rendered::mean_luminance() const {
 }
 
 std::vector<Rendered> render_text_seeds(const std::string& scene_text, const RenderSettings& settings, uint32_t seeds) {
-    auto sources = std::make_shared<Sources>();
-    Diagnostics diagnostics(*sources);
-    return render_description(parse_scene_text("test.pbrt", scene_text, ".", sources, diagnostics), settings,
-                              diagnostics, seeds);
+    return render_seeds(SceneSource::of_text(scene_text, "test.pbrt"), settings, seeds);
 }
 
 Rendered render_text(const std::string& scene_text, const RenderSettings& settings, const std::string& directory) {
-    auto sources = std::make_shared<Sources>();
-    Diagnostics diagnostics(*sources);
-    return std::move(render_description(parse_scene_text("test.pbrt", scene_text, directory, sources, diagnostics),
-                                        settings, diagnostics)[0]);
+    return std::move(render_seeds(SceneSource::of_text(scene_text, "test.pbrt", directory), settings)[0]);
 }
 
 Rendered render_file(const std::string& path, const RenderSettings& settings) {
-    auto sources = std::make_shared<Sources>();
-    Diagnostics diagnostics(*sources);
-    return std::move(render_description(parse_scene_file(path, sources, diagnostics), settings, diagnostics)[0]);
+    return std::move(render_seeds(SceneSource::of_file(path), settings)[0]);
 }
 
 std::vector<std::string> usable_backends() {

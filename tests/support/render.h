@@ -1,13 +1,12 @@
 // Rendering for tests: a scene text or file, a backend, and the film that comes out.
 #pragma once
 
-#include "core/film.h"
-#include "core/integrator.h"
 #include "core/photon_map.h"
-#include "core/scene/build.h"
+#include "core/render/render.h"
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,7 +23,7 @@ struct RenderSettings {
     std::optional<std::array<int, 2>> resolution;
     std::optional<std::string> sampler;  // in place of the scene's: "independent", "sobol"
     std::string integrator;              // "name:key=value"; empty: the scene's
-    std::string photon_map = kDefaultPhotonMap;
+    std::string photon_map;              // empty: the scene's
     // A device for all scenes that say so, and on Vulkan the kernel with all effects, whatever a scene asks for: it is compiled once.
     bool one_variant = false;
     std::map<std::string, std::string> device_settings;
@@ -32,7 +31,7 @@ struct RenderSettings {
     uint32_t first_pass = 0;
     std::function<std::shared_ptr<Device>(std::shared_ptr<Device>)> wrap;  // what to render on in place of the device
     uint32_t slice = 0;  // passes per dispatch; 0: as the session decides
-    std::function<void(const RenderProgress&, const Film&)> on_progress;  // RenderSession's
+    std::function<void(const RenderProgress&, const Film&)> on_progress;  // RenderObserver's
 };
 
 struct Rendered {

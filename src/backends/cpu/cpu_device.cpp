@@ -152,11 +152,12 @@ class CpuDevice final : public Device {
         call.unfinished = &unfinished;
         // Small blocks, handed out as threads come free: paths differ in length by far.
         const uint32_t block = std::clamp<uint32_t>(count / (threads_ * 32u), 1u, 256u);
+        const Watch& watch = current_watch();  // of the caller's thread: the others have none
         arena_.execute([&] {
             tbb::parallel_for(
                 tbb::blocked_range<uint64_t>(begin, uint64_t(begin) + count, block),
                 [&](const tbb::blocked_range<uint64_t>& range) {
-                    check_cancelled();
+                    watch.check_cancelled();
                     const FlushDenormals flush;
                     CpuInvocation part = call;
                     part.begin = uint32_t(range.begin());

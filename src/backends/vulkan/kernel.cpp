@@ -79,7 +79,7 @@ VulkanKernel::Spent VulkanKernel::run(const SceneBindings& scene, std::span<cons
         std::min<uint64_t>(uint64_t(context_->can.max_groups) * local_size_, UINT32_MAX - local_size_));
     if (chunk_ == 0) chunk_ = kFirstChunk;
     for (uint32_t done = 0; done < count;) {
-        check_cancelled();
+        current_watch().check_cancelled();
         const uint32_t piece = std::min({count - done, chunk_, most});
         const double seconds = chosen.dispatch(begin + done, piece);
         spent.kernel_s += seconds;

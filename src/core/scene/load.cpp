@@ -4,27 +4,34 @@
 
 namespace lampyris {
 
-LoadedScene load_scene(const std::string& path, const BuildOptions& options, bool skip_unsupported) {
+LoadedScene read_scene(SceneSource source, const BuildOptions& options, std::shared_ptr<Sources> sources,
+                       Diagnostics& diagnostics) {
     using Clock = std::chrono::steady_clock;
     const auto seconds = [](Clock::time_point since) {
         return std::chrono::duration<double>(Clock::now() - since).count();
     };
     LoadedScene loaded;
-    loaded.sources = std::make_shared<Sources>();
-    Diagnostics diagnostics(*loaded.sources);
-    diagnostics.set_skip_unsupported(skip_unsupported);
+    loaded.sources = std::move(sources);
     const auto start = Clock::now();
-    SceneDescription description = parse_scene_file(path, loaded.sources, diagnostics);
+    SceneDescription description = source.text ? parse_scene_text(source.name, *std::move(source.text),
+                                                                  source.directory, loaded.sources, diagnostics)
+                                               : parse_scene_file(source.name, loaded.sources, diagnostics);
     loaded.parse_s = seconds(start);
     const auto parsed = Clock::now();
     // Building goes on after errors of the parser: all that is wrong with a scene is told at once.
-    BuiltScene built = build_scene(std::move(description), options, diagnostics);
-    diagnostics.throw_if_errors();
-    loaded.scene = std::move(built.scene);
-    loaded.scene.name = path;
-    loaded.settings = std::move(built.settings);
-    loaded.warnings = diagnostics.warnings();
+    static_cast<BuiltScene&>(loaded) = build_scene(std::move(description), options, diagnostics);
+    loaded.scene.name = std::move(source.name);
     loaded.build_s = seconds(parsed);
+    return loaded;
+}
+
+LoadedScene load_scene(SceneSource source, const BuildOptions& options, bool skip_unsupported) {
+    auto sources = std::make_shared<Sources>();
+    Diagnostics diagnostics(*sources);
+    diagnostics.set_skip_unsupported(skip_unsupported);
+    LoadedScene loaded = read_scene(std::move(source), options, std::move(sources), diagnostics);
+    diagnostics.throw_if_errors();
+    loaded.warnings = diagnostics.warnings();
     return loaded;
 }
 

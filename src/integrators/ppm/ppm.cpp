@@ -11,6 +11,7 @@ class Ppm : public Integrator {
  public:
     SppmParams params;
     bool uses_photon_map() const override { return true; }
+    ErrorRate error_rate() const override { return ErrorRate::of_photons(double(params.alpha)); }
     bool fixes_eye_samples() const override { return true; }
     std::string unseen_error(uint32_t eye_samples) const override {
         constexpr uint32_t kEnough = 16;  // what is left of a pixel's inside is then small beside the rest, as a rule

@@ -7,6 +7,7 @@ class Sppm : public Integrator {
  public:
     SppmParams params;
     bool uses_photon_map() const override { return true; }
+    ErrorRate error_rate() const override { return ErrorRate::of_photons(double(params.alpha)); }
     void render(RenderSession& session) override { render_photon_mapping(session, params, 0); }
 };
 
