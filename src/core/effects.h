@@ -18,16 +18,18 @@ struct EffectRequest {
 // A set computed from the description, not a user's switch.
 class Effects {
  public:
-    // The first one to ask is remembered. Where who asks is a function, it is called for the first alone: to find a place in
-    // a file takes time.
+    // One effect or several. The first one to ask for each is remembered. Where who asks is a function, it is called for new effects
+    // alone: to find a place in a file takes time.
     template <typename AskedBy>
-    void ask(uint64_t effect, const AskedBy& asked_by) {
-        if (mask_ & effect) return;
-        mask_ |= effect;
-        if constexpr (std::invocable<const AskedBy&>)
-            requests_.push_back({effect, asked_by()});
-        else
-            requests_.push_back({effect, asked_by});
+    void ask(kernel::EffectSet effects, const AskedBy& asked_by) {
+        for (kernel::EffectSet left = effects & ~mask_; left != 0; left &= left - 1) {
+            const kernel::EffectSet lowest = left & (~left + 1);
+            if constexpr (std::invocable<const AskedBy&>)
+                requests_.push_back({lowest, asked_by()});
+            else
+                requests_.push_back({lowest, asked_by});
+        }
+        mask_ |= effects;
     }
     uint64_t mask() const { return mask_; }
     bool has(uint64_t effect) const { return (mask_ & effect) != 0; }
