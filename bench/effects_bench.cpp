@@ -5,7 +5,7 @@
 #include "backends/cpu/cpu_scene.h"
 #include "core/film.h"
 #include "core/integrator.h"
-#include "core/scene/build.h"
+#include "core/scene/load.h"
 #include "integrators/path/path.params.h"
 
 #include <nlohmann/json.hpp>
@@ -26,14 +26,10 @@ namespace lampyris {
 namespace {
 
 int run(const std::string& file, int width, int height, uint32_t samples, bool exact) {
-    auto sources = std::make_shared<Sources>();
-    Diagnostics diagnostics(*sources);
-    SceneDescription description = parse_scene_file(file, sources, diagnostics);
     BuildOptions options;
     options.resolution = {width, height};
-    BuiltScene built = build_scene(std::move(description), options, diagnostics);
-    diagnostics.throw_if_errors();
-    const Scene& scene = built.scene;
+    const LoadedScene loaded = load_scene(SceneSource::of_file(file), options, false);
+    const Scene& scene = loaded.scene;
     const CpuScene cpu(scene, CpuTracerKind::embree);
     PathParams params;
     const IntegratorFactory& factory = integrators().require("path");

@@ -6,7 +6,7 @@
 #include "backends/cpu/embree_scene.h"
 #include "core/film.h"
 #include "core/integrator.h"
-#include "core/scene/build.h"
+#include "core/scene/load.h"
 #include "integrators/path/path.params.h"
 
 #include <nlohmann/json.hpp>
@@ -92,19 +92,16 @@ double median(std::vector<double> values) {
 }
 
 int run(const std::string& file, int width, int height, uint32_t samples, int threads, int repeats) {
-    auto sources = std::make_shared<Sources>();
-    Diagnostics diagnostics(*sources);
-    SceneDescription description = parse_scene_file(file, sources, diagnostics);
     BuildOptions options;
     options.resolution = {width, height};
-    BuiltScene built = build_scene(std::move(description), options, diagnostics);
-    diagnostics.throw_if_errors();
-    const Scene& scene = built.scene;
+    const LoadedScene loaded = load_scene(SceneSource::of_file(file), options, false);
+    const Scene& scene = loaded.scene;
     const CpuScene cpu(scene, CpuTracerKind::embree);
     PathParams params;
     const IntegratorFactory& factory = integrators().require("path");
     set_defaults(&params, factory.fields);
-    read_parameters(&params, factory.fields, built.settings.integrator.parameters, diagnostics);
+    Diagnostics diagnostics(*loaded.sources);  // not looked at: the scene may be another integrator's
+    read_parameters(&params, factory.fields, loaded.settings.integrator.parameters, diagnostics);
     const CpuKernelFunction kernel =
         find_cpu_kernel("integrators/path/path.radiance.h", CpuTracerKind::embree, scene.effects.mask());
 
