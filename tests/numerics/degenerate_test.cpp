@@ -1,15 +1,11 @@
 // Scenes that no sane person writes, and generators do: each renders something sane on every backend, or is refused with
 // the place of the mistake. Nothing crashes, hangs, or makes samples that are not finite without telling.
-#include "core/film.h"
-#include "core/integrator.h"
 #include "core/memory.h"
-#include "core/scene/build.h"
 #include "support/render.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <map>
 
 namespace lampyris::test {
 namespace {
@@ -262,41 +258,15 @@ const std::vector<Case>& cases() {
     return all;
 }
 
-// One device per backend: a scene costs its rendering, not a start.
-Device& device_of(const std::string& backend) {
-    static std::map<std::string, std::unique_ptr<Device>> devices;
-    std::unique_ptr<Device>& device = devices[backend];
-    if (!device) device = create_device(backend, {});
-    return *device;
-}
-
 // Throws InputError.
-FilmSummary render(const Case& c, const std::string& backend, std::vector<float>& rgb) {
-    auto sources = std::make_shared<Sources>();
-    Diagnostics diagnostics(*sources);
-    SceneDescription description =
-        parse_scene_text("test.pbrt", c.view + c.film + "WorldBegin\n" + c.world, "/nonexistent", sources, diagnostics);
-    BuiltScene built = build_scene(std::move(description), {}, diagnostics);
-    diagnostics.throw_if_errors();
-    // On Vulkan one variant of the kernel for all: compiling one for each would take minutes.
-    if (backend == "vulkan") {
-        built.scene.effects.ask(kernel::kAllEffects, "the test");
-        built.scene.record_effects(built.scene.effects.mask());
-    }
-    const IntegratorFactory& factory = integrators().require("path");
-    const std::unique_ptr<Integrator> integrator = factory.create();
-    set_defaults(integrator->parameters(), factory.fields);
-    Device& device = device_of(backend);
-    const DeviceSceneHandle device_scene = device.upload(built.scene);
-    Film film(device, built.scene, built.settings.crop);
-    constexpr uint64_t kSamples = 4;
-    RenderSession session(device, built.scene, device_scene, film, {kSamples, {}, {}});
-    session.seed = 1;
-    session.sampler = kernel::SAMPLER_INDEPENDENT;
-    integrator->render(session);
-    film.download();
-    rgb = film.rgb();
-    return film.summary();
+Rendered render(const Case& c, const std::string& backend) {
+    RenderSettings settings;
+    settings.backend = backend;
+    settings.samples = 4;
+    settings.sampler = "independent";
+    settings.integrator = "path";
+    settings.one_variant = true;  // compiling one for each would take minutes
+    return render_text(c.view + c.film + "WorldBegin\n" + c.world, settings, "/nonexistent");
 }
 
 class Degenerate : public testing::TestWithParam<std::string> {};
@@ -307,8 +277,7 @@ TEST_P(Degenerate, IsRenderedOrRefused) {
         if (!c.error.empty()) {
             if (GetParam() != "cpu") continue;  // no backend is asked
             try {
-                std::vector<float> rgb;
-                render(c, GetParam(), rgb);
+                render(c, GetParam());
                 ADD_FAILURE() << "rendered without an error that says " << c.error;
             } catch (const InputError& error) {
                 const std::string what = error.what();
@@ -317,18 +286,17 @@ TEST_P(Degenerate, IsRenderedOrRefused) {
             }
             continue;
         }
-        std::vector<float> rgb;
-        FilmSummary summary;
+        Rendered rendered;
         try {
-            summary = render(c, GetParam(), rgb);
+            rendered = render(c, GetParam());
         } catch (const Error& error) {
             ADD_FAILURE() << error.what();
             continue;
         }
-        EXPECT_EQ(summary.non_finite, 0u);
-        EXPECT_EQ(summary.samples, 8u * 8u * 4u);
+        EXPECT_EQ(rendered.summary.non_finite, 0u);
+        EXPECT_EQ(rendered.summary.samples, 8u * 8u * 4u);
         bool finite = true, lit = false;
-        for (const float value : rgb) {
+        for (const float value : rendered.image.rgb().pixels) {
             finite = finite && std::isfinite(value);
             lit = lit || value > 0.0f;
         }
@@ -372,9 +340,8 @@ TEST(DegenerateMemory, AHugeFilmIsRefused) {
     c.film = "Film \"rgb\" \"integer xresolution\" 32768 \"integer yresolution\" 32768\n";
     if (machine_memory() > uint64_t(32768) * 32768 * 2 * sizeof(kernel::FilmPixel))
         GTEST_SKIP() << "it may fit into this machine";
-    std::vector<float> rgb;
     try {
-        render(c, "cpu", rgb);
+        render(c, "cpu");
         FAIL() << "2^30 pixels fit into memory";
     } catch (const MachineError& error) {
         EXPECT_NE(std::string(error.what()).find("a film of 32768x32768 pixels needs"), std::string::npos)
