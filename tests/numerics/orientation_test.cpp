@@ -49,7 +49,7 @@ class OrientationTest : public testing::TestWithParam<std::string> {
         settings.seed = 3;
         settings.sampler = "independent";
         settings.integrator = integrator;
-        settings.one_variant = integrator.empty() || integrator.starts_with("path");
+        settings.share_device = integrator.empty() || integrator.starts_with("path");
         return render_text(text, settings);
     }
     Rendered glass(const std::string& shape) {

@@ -48,7 +48,7 @@ class ScaleTest : public testing::TestWithParam<std::string> {
         settings.samples = samples;
         settings.seed = 5;
         settings.sampler = "independent";
-        settings.one_variant = integrator.find("path") != std::string::npos;
+        settings.share_device = integrator.find("path") != std::string::npos;
         const Rendered ordinary = render_text(scene(0, integrator), settings);
         EXPECT_GT(ordinary.mean_luminance(), 0.1);
         for (const int exponent : exponents) {

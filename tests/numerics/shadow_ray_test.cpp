@@ -102,7 +102,7 @@ class ShadowRayTest : public testing::TestWithParam<std::string> {
         settings.seed = 7;
         settings.sampler = "independent";
         settings.integrator = integrator;
-        settings.one_variant = integrator.empty();
+        settings.share_device = integrator.empty();
         return render_text(text, settings);
     }
 

@@ -41,11 +41,10 @@ RenderRequest request_of(SceneSource scene, const RenderSettings& settings) {
     if (settings.eye_samples != 1) request.samples_per_pixel = settings.eye_samples;
     request.first_pass = settings.first_pass;
     request.max_slice = settings.slice;
-    if (settings.one_variant && settings.backend == "vulkan") request.effects = kernel::kAllEffects;
     DeviceOptions options;
     options.threads = settings.threads;
     options.settings = settings.device_settings;
-    request.device = settings.one_variant ? shared_device(settings.backend) : create_device(settings.backend, options);
+    request.device = settings.share_device ? shared_device(settings.backend) : create_device(settings.backend, options);
     if (settings.wrap) request.device = settings.wrap(std::move(request.device));
     return request;
 }

@@ -24,8 +24,7 @@ struct RenderSettings {
     std::optional<std::string> sampler;  // in place of the scene's: "independent", "sobol"
     std::string integrator;              // "name:key=value"; empty: the scene's
     std::string photon_map;              // empty: the scene's
-    // A device for all scenes that say so, and on Vulkan the kernel with all effects, whatever a scene asks for: it is compiled once.
-    bool one_variant = false;
+    bool share_device = false;           // with all scenes that say so
     std::map<std::string, std::string> device_settings;
     std::optional<std::array<int, 4>> crop;
     uint32_t first_pass = 0;
