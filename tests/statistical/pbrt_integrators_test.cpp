@@ -1,6 +1,7 @@
 // Scenes that name an integrator of pbrt-v4: what renders in its place gives the same numbers, to the bit, as that integrator
 // asked for by its own name; and these are the right ones. False alarms: 6e-7 for each mean (five standard errors), in all below
 // 4e-6.
+#include "core/integrator.h"
 #include "core/pbrt_integrators.h"
 #include "support/build_text.h"
 #include "support/render.h"
