@@ -42,7 +42,8 @@ class LimitedDevice final : public Device {
         const auto found = sampling_.find(&kernel);
         if (found == sampling_.end() || count == 0) return;
         kernel::FilmWindow window{};
-        buffers[0]->download(&window, sizeof window);
+        for (const NamedBuffer& buffer : buffers)
+            if (buffer.name == "window") buffer.buffer->download(&window, sizeof window);
         if (window.samples <= most_) return;
         ++failures_;
         throw UnfinishedError("error: kernel " + found->second + " could not finish a loop within its bound");
