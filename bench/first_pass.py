@@ -26,6 +26,7 @@ def first_pass(folder: Path, scene: Path, integrator: str | None) -> dict:
         statistics = Path(scratch) / "stats.json"
         command = [folder / "lampyris", "render", scene, "-o", Path(scratch) / "image.pfm", "--stats", statistics]
         command += ["--backend", "vulkan", "--set", "backend.cache=off", "--resolution", "16x16", "--passes", "1"]
+        command += ["--skip-unsupported"]  # of scenes/prism, dispersion
         if integrator:
             command += ["--integrator", integrator]
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
