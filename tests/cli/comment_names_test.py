@@ -9,7 +9,7 @@ C_SUFFIXES, OTHER_SUFFIXES = (".h", ".cpp", ".glsl", ".in"), (".py", ".cmake", "
 C_TOKENS = re.compile(r'"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'|//[^\n]*|/\*.*?\*/', re.DOTALL)
 OTHER_TOKENS = re.compile(r'""".*?"""|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'|#[^\n]*', re.DOTALL)
 FILE = re.compile(r"[\w./-]*\w\.(?:h|cpp|py|md|cmake|glsl|toml|pbrt)\b(?!\.in)")
-# snake_case, called(), camelCase, PascalCase, kConstant.
+# Words of several parts, and what is called.
 SYMBOL = re.compile(
     r"\b[a-zA-Z]\w*_\w+\b|\b[a-z]\w*(?=\(\))|\b[a-z]+[A-Z]\w*\b|\b[A-Z][a-z0-9]+[A-Z]\w*\b|\bk[A-Z]\w+\b"
 )
