@@ -199,7 +199,7 @@ CONST uint CDF_TOTAL = 0x80000000u;  // where a CDF in `distributions` ends
 struct LightRecord {
     uvec4 data;  // kind, flags | medium << 16, image or emission texture or NONE, transform (light space) or NONE
     uvec4
-        ids;  // area lights: geometry, primitive, how far outside shadow rays end (float bits; patches: each point has its own); infinite images: offset of the distribution, width, height
+        ids;  // area lights: geometry, primitive, how far outside of a triangle shadow rays end (float bits); infinite images: offset of the distribution, width, height
     vec4
         emission;  // rgb: radiance, intensity or irradiance, or the scale of the texture or image; w: the probability of choosing this light
     vec4 v0;  // triangle: p0, w: area. point, spot, ...: position. distant: unit direction towards the light, w: unused

@@ -98,7 +98,7 @@ FN bool sample_area_light(uint index, vec3 ref_p, vec2 u, INOUT(LightSample) s) 
     } else if (HAS(EFFECT_BILINEAR) && geometries[light.ids.x].data.x == GEOMETRY_BILINEAR) {
         found = sample_bilinear_light(light.ids.x, light.ids.y, ref_p, u, shape);
     } else if (HAS(EFFECT_QUADRICS)) {
-        found = sample_quadric_light(light, ref_p, u, shape);
+        found = sample_quadric_light(light.ids.x, ref_p, u, shape);
     }
     if (!found) return false;
     s.wi = shape.wi;

@@ -285,13 +285,11 @@ FN AreaSample sample_quadric_area(uint geometry, vec2 u) {
     return s;
 }
 
-FN bool sample_quadric_light(IN(LightRecord) light, vec3 ref_p, vec2 u, OUT(ShapeSample) s) {
-    uint geometry = light.ids.x;
+FN bool sample_quadric_light(uint geometry, vec3 ref_p, vec2 u, OUT(ShapeSample) s) {
     GeometryRecord g = geometries[geometry];
     TransformRecord m = transforms[g.ids.w];
     uint kind = g.data.x;
     s.uv = vec2(0.0f);
-    s.offset = uintBitsToFloat(light.ids.z);  // quadric_offset (core/scene/shapes/quadrics.cpp)
     if (kind == GEOMETRY_SPHERE && sphere_is_whole(g.params) && sphere_hides_its_inside(g)) {
         vec3 o = transform_point(m.from0, m.from1, m.from2, ref_p);
         float one_minus_cos_max = sphere_cone(g.params, o);
@@ -316,7 +314,9 @@ FN bool sample_quadric_light(IN(LightRecord) light, vec3 ref_p, vec2 u, OUT(Shap
             s.wi = set_w / stretch;
             s.distance = t * g.params.x * stretch;
             s.inverse_cosine = inverse_of_cosine(dot3(s.ng, s.wi));
-            s.position = transform_point(m.to0, m.to1, m.to2, p);
+            vec3 error;
+            s.position = quadric_set_position(geometry, p, error);
+            s.offset = way_out_length(s.position, error, s.ng);
             s.pdf = pdf_uniform_cone(one_minus_cos_max) * sphere_cone_stretch(m, stretch);
             if (HAS(EFFECT_LIGHT_TEXTURES) || HAS(EFFECT_ALPHA)) s.uv = quadric_uv(kind, g.params, p);
             return is_finite(s.pdf);
@@ -324,6 +324,7 @@ FN bool sample_quadric_light(IN(LightRecord) light, vec3 ref_p, vec2 u, OUT(Shap
     }
     AreaSample place = sample_quadric_area(geometry, u);
     s.position = place.position;
+    s.offset = way_out_length(place.position, place.error, place.ng);
     s.ng = place.ng;
     s.uv = place.uv;
     return shape_sample_from_area(ref_p, place.pdf, s);

@@ -1,11 +1,9 @@
 // Shapes "sphere", "disk" and "cylinder": intersected exactly, in their own space.
 #include "core/scene/area_lights.h"
-#include "core/scene/shapes/plane_error.h"
 
 #include <glm/glm.hpp>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -16,23 +14,6 @@ namespace {
 // By how much a transform stretches lengths, on average: exact for uniform scales. Chooses lights, nothing else.
 float mean_stretch(const glm::mat4& m) {
     return float(std::cbrt(std::abs(glm::determinant(glm::dmat3(glm::mat3(m))))));
-}
-
-// How far along the normal shadow rays end, anywhere on the quadric (as way_out_length and quadric_set_position say it for a point).
-float quadric_offset(uint32_t kind, const kernel::vec4& params, const kernel::TransformRecord& t) {
-    const bool disk = kind == kernel::GEOMETRY_DISK;
-    const double radius = disk ? params.y : params.x;
-    const glm::dvec3 most(radius, radius, disk ? std::abs(params.x) : std::max(std::abs(params.y), std::abs(params.z)));
-    glm::dvec3 offset;
-    for (int i = 0; i < 3; ++i) {
-        const glm::dvec4 row = glm::abs(glm::dvec4(i == 0 ? t.to0 : i == 1 ? t.to1 : t.to2));
-        const double linear = glm::dot(glm::dvec3(row), most);
-        // 5 of the point itself, 8 of the transform, 4 of the sum.
-        offset[i] = kHalfUlp * (17.0 * linear + 12.0 * row.w);
-    }
-    // Of a disk there is one normal, of the others any.
-    if (disk) return float(glm::dot(glm::abs(glm::normalize(glm::dvec3(t.from2))), offset));
-    return float(glm::length(offset));
 }
 
 void add_quadric(ShapeContext& context, uint32_t kind, kernel::vec4 params, float area) {
@@ -46,7 +27,6 @@ void add_quadric(ShapeContext& context, uint32_t kind, kernel::vec4 params, floa
     begin_area_lights(context, index, 1u);
     kernel::LightRecord light{};
     light.data.x = kernel::LIGHT_GEOMETRY;
-    light.ids.z = std::bit_cast<uint32_t>(quadric_offset(kind, params, context.build.scene.transforms[geometry.ids.w]));
     const float stretch = mean_stretch(matrix);
     add_area_light(context, light, index, 0u, area * stretch * stretch, area);
 }
