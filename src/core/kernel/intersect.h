@@ -6,24 +6,8 @@
 // How many masked or invisible surfaces a ray may pass before it is an error.
 CONST uint MAX_PASSED_SURFACES = 100000u;
 
-// Of the triangle's point with these barycentrics, where its mesh has no error for all of them (layout.h). What it needs is computed
-// anew, of sides near 1: were it kept for this call, every hit would pay for it.
-RARE_FN float triangle_point_error(uint geometry, uint primitive, float b1, float b2) {
-    uvec4 data = geometries[geometry].data;
-    uint base = data.z + 3u * primitive;
-    vec3 p0 = vertex_position(data.w + indices[base]);
-    vec3 e1 = vertex_position(data.w + indices[base + 1u]) - p0;
-    vec3 e2 = vertex_position(data.w + indices[base + 2u]) - p0;
-    float scale = scale_to_one(max(max_component(abs(e1)), max_component(abs(e2))));
-    vec3 side1 = scale * e1;
-    vec3 side2 = scale * e2;
-    float area = length_of_area(cross3(side1, side2));
-    return area > 0.0f ? triangle_plane_error(side1, side2, b1, b2, 1.0f / area) / scale : 0.0f;
-}
-
-// The triangle's point that the ray meets (Möller and Trumbore 1997 for the barycentrics), in the geometry set's space. Returns
-// how far along the normal rays that leave it start.
-FN float triangle_surface(uint geometry, uint primitive, vec3 o, vec3 d, INOUT(Surface) s) {
+// The triangle's point that the ray meets (Möller and Trumbore 1997 for the barycentrics), in the geometry set's space.
+FN void triangle_surface(uint geometry, uint primitive, vec3 o, vec3 d, INOUT(Surface) s) {
     uvec4 data = geometries[geometry].data;
     uint base = data.z + 3u * primitive;
     uint i0 = indices[base];
@@ -61,9 +45,13 @@ FN float triangle_surface(uint geometry, uint primitive, vec3 o, vec3 d, INOUT(S
     float b0 = 1.0f - b1 - b2;
     s.distance = dot3(from, n) * inverse * unscale;
     s.position = b0 * p0 + b1 * p1 + b2 * p2;
-    s.ng = n_length > 0.0f ? n * (1.0f / n_length) : -unit(d);
-    vec3 magnitude = abs(b0 * p0) + abs(b1 * p1) + abs(b2 * p2);  // at least that of the position
-    float offset = (gamma_bound(7.0f) + ROUNDED_AWAY) * dot3(abs(s.ng), magnitude);
+    s.error = gamma_bound(7.0f) * (abs(b0 * p0) + abs(b1 * p1) + abs(b2 * p2));
+    s.ng = -unit(d);
+    if (n_length > 0.0f) {
+        float n_inverse = 1.0f / n_length;
+        s.ng = n * n_inverse;
+        s.error += (triangle_plane_error(side1, side2, b1, b2, n_inverse) * unscale) * abs(s.ng);
+    }
 
     s.uv = vec2(0.0f);
     s.dpdu = vec3(0.0f);
@@ -121,21 +109,14 @@ FN float triangle_surface(uint geometry, uint primitive, vec3 o, vec3 d, INOUT(S
         if ((data.y & GEOMETRY_FLIP) != 0u) s.ng = -s.ng;
         s.ns = s.ng;
     }
-    float off_plane = geometries[geometry].params.x;
-    if (RARELY(off_plane < 0.0f)) off_plane = triangle_point_error(geometry, primitive, b1, b2);
-    s.error = gamma_bound(7.0f) * magnitude + off_plane * abs(s.ng);
-    return offset + off_plane;
 }
 
-// Moves a surface point from an instance's space to the world, with how far along the normal rays that leave it start.
-FN float surface_to_world(uint instance, float offset, INOUT(Surface) s) {
+// Moves a surface point from an instance's space to the world.
+FN void surface_to_world(uint instance, INOUT(Surface) s) {
     TransformRecord m = instances[instance].transform;
-    vec3 rounding = gamma_bound(3.0f) * transform_magnitude(m.to0, m.to1, m.to2, s.position);
     s.error = transform_error(m.to0, m.to1, m.to2, s.position, s.error);
     s.position = transform_point(m.to0, m.to1, m.to2, s.position);
-    vec3 ng = transform_normal(m.from0, m.from1, m.from2, s.ng);
-    float ng_inverse = 1.0f / length_of(ng);
-    s.ng = ng * ng_inverse;
+    s.ng = unit(transform_normal(m.from0, m.from1, m.from2, s.ng));
     vec3 ns = transform_normal(m.from0, m.from1, m.from2, s.ns);
     float ns_length = length_of(ns);
     s.ns = face_forward(ns / ns_length, s.ng);
@@ -145,8 +126,6 @@ FN float surface_to_world(uint instance, float offset, INOUT(Surface) s) {
         s.dndu = transform_normal(m.from0, m.from1, m.from2, s.dndu) / ns_length;
         s.dndv = transform_normal(m.from0, m.from1, m.from2, s.dndv) / ns_length;
     }
-    // Planes that lie so far apart there.
-    return offset * ng_inverse + way_out_length(s.position, rounding, s.ng);
 }
 
 // The surface point of a hit; the ray is the one that was traced. False where the shared code finds no point (a tracer that
@@ -160,18 +139,15 @@ FN bool surface_at(IN(Hit) hit, vec3 o, vec3 d, INOUT(Surface) s) {
         set_d = transform_vector(m.from0, m.from1, m.from2, d);
     }
     uint kind = geometries[hit.geometry].data.x;
-    float offset;
     if (HAS(EFFECT_BILINEAR) && kind == GEOMETRY_BILINEAR) {
         if (!bilinear_surface(hit.geometry, hit.primitive, set_o, set_d, s)) return false;
-        offset = way_out_length(s.position, s.error, s.ng);
     } else if (HAS(EFFECT_QUADRICS) && kind >= GEOMETRY_SPHERE) {
         if (!quadric_surface(hit.geometry, set_o, set_d, s)) return false;
-        offset = way_out_length(s.position, s.error, s.ng);
     } else {
-        offset = triangle_surface(hit.geometry, hit.primitive, set_o, set_d, s);
+        triangle_surface(hit.geometry, hit.primitive, set_o, set_d, s);
     }
-    if (HAS(EFFECT_INSTANCES) && hit.instance != 0u) offset = surface_to_world(hit.instance, offset, s);
-    s.way = offset * s.ng;
+    if (HAS(EFFECT_INSTANCES) && hit.instance != 0u) surface_to_world(hit.instance, s);
+    s.way = way_out(s.position, s.error, s.ng);
     uvec4 ids = geometries[hit.geometry].ids;
     s.instance = hit.instance;
     s.geometry = hit.geometry;
@@ -264,7 +240,7 @@ FN float aim_at(vec3 o, vec3 end, INOUT(vec3) direction) {
 }
 
 // shadow_ray where surfaces may let the ray pass.
-RARE_FN bool shadow_ray_through(vec3 start_o, vec3 start_direction, float distance, float reach, uint start,
+RARE_FN bool shadow_ray_through(vec3 start_o, vec3 start_direction, float distance, vec3 end, uint start,
                                 OUT(vec3) transmittance) {
     transmittance = vec3(1.0f);
     vec3 o = start_o;
@@ -272,12 +248,12 @@ RARE_FN bool shadow_ray_through(vec3 start_o, vec3 start_direction, float distan
     bool absorbs = HAS(EFFECT_MEDIUM) && start != MEDIA_IGNORED;
     uint medium = start;
     float left = distance;
-    float t_max = reach;
-    vec3 end = start_o + reach * start_direction;
     for (uint i = 0u; i < MAX_PASSED_SURFACES; ++i) {
         Hit hit;
         Surface s;
         traced_rays[0] += 1u;
+        // Beyond each surface the ray starts a little aside of its line, and takes aim again.
+        float t_max = distance < INFINITE_DISTANCE ? aim_at(o, end, direction) : INFINITE_DISTANCE;
         bool found = t_max > 0.0f && trace_closest(o, direction, t_max, hit) && surface_at(hit, o, direction, s);
         if (!found) {
             if (absorbs) transmittance *= medium_transmittance(medium, max(left, 0.0f));
@@ -297,50 +273,48 @@ RARE_FN bool shadow_ray_through(vec3 start_o, vec3 start_direction, float distan
             if (crosses) medium = medium_behind(s, direction, medium);
         }
         o = origin_beyond(s.position, s.way, direction);
-        if (distance < INFINITE_DISTANCE) {
-            left -= s.distance;
-            // It starts a little aside of its line, and takes aim again.
-            t_max = aim_at(o, end, direction);
-        }
+        if (distance < INFINITE_DISTANCE) left -= s.distance;
     }
     REPORT_UNFINISHED();
     return true;
 }
 
-// Whether anything opaque lies between o, outside of a surface, and what is `distance` away along the unit direction; the ray ends
-// before it, after `reach` (scene_transmittance): of 0 or less where nothing but rounding errors was on the way. INFINITE_DISTANCE has
-// no end. If not, `transmittance` is what masked surfaces and media on the way leave, `start` being the medium in which the ray starts.
-FN bool shadow_ray(vec3 o, vec3 direction, float distance, float reach, uint start, OUT(vec3) transmittance) {
+// Whether anything opaque lies between o, outside of a surface, and `end`, `distance` away along the unit direction and outside of
+// a surface, too, if there is one (shadow_end); INFINITE_DISTANCE has no end. If not, `transmittance` is what masked surfaces and
+// media on the way leave, `start` being the medium in which the ray starts.
+FN bool shadow_ray(vec3 o, vec3 direction, float distance, vec3 end, uint start, OUT(vec3) transmittance) {
     if (HAS(EFFECT_ALPHA | EFFECT_INTERFACE) && RARELY(CALLED_FOR(EFFECT_ALPHA | EFFECT_INTERFACE))) {
         vec3 through;
-        bool occluded = shadow_ray_through(o, direction, distance, reach, start, through);
+        bool occluded = shadow_ray_through(o, direction, distance, end, start, through);
         transmittance = through;
         return occluded;
     }
     traced_rays[0] += 1u;
     transmittance = vec3(1.0f);
     if (HAS(EFFECT_MEDIUM) && start != MEDIA_IGNORED) transmittance = medium_transmittance(start, distance);
-    return reach > 0.0f && trace_occluded(o, direction, reach);
+    vec3 aimed = direction;
+    float t_max = distance < INFINITE_DISTANCE ? aim_at(o, end, aimed) : INFINITE_DISTANCE;
+    return t_max > 0.0f && trace_occluded(o, aimed, t_max);
 }
 
-// How much s sees of what lies `distance` away along the unit direction, whatever media lie between; the distance counts from the
-// point's rounding error on.
+// How much a surface point sees of what lies `distance` away along the unit direction, whatever media lie between; the distance counts
+// from the point's rounding error on.
 FN float scene_openness(IN(Surface) s, vec3 direction, float distance) {
     vec3 transmittance;
     vec3 o = origin_beyond(s.position, s.way, direction);
-    float limited = distance < 1e18f ? distance : INFINITE_DISTANCE;  // no two points of a scene are so far apart
-    return shadow_ray(o, direction, limited, limited, MEDIA_IGNORED, transmittance) ? 0.0f : transmittance.x;
+    bool limited = distance < 1e18f;  // no two points of a scene are so far apart, and the square is a float
+    vec3 end = limited ? o + distance * direction : vec3(0.0f);
+    float reach = limited ? distance : INFINITE_DISTANCE;
+    return shadow_ray(o, direction, reach, end, MEDIA_IGNORED, transmittance) ? 0.0f : transmittance.x;
 }
 
-// The share of light that comes to s from what `end` says, `distance` away along the unit direction. s was reached through `medium`.
-FN vec3 scene_transmittance(IN(Surface) s, vec3 direction, float distance, IN(ShadowEnd) end, uint medium) {
+// The share of light that comes to s from `end` (shadow_end), `distance` away along the unit direction. s was reached through
+// `medium`.
+FN vec3 scene_transmittance(IN(Surface) s, vec3 direction, float distance, vec3 end, uint medium) {
     vec3 transmittance;
     uint start = medium_behind(s, direction, medium);
     vec3 o = origin_beyond(s.position, s.way, direction);
-    // The start is off the line to the light's point, by `way` and what rounding the sum adds, in each coordinate no more than that.
-    float aside = 2.0f * (abs(s.way.x) + abs(s.way.y) + abs(s.way.z));
-    float reach = distance - (end.offset + aside) * end.inverse_cosine;
-    bool occluded = shadow_ray(o, direction, distance, reach, start, transmittance);
+    bool occluded = shadow_ray(o, direction, distance, end, start, transmittance);
     return occluded ? vec3(0.0f) : transmittance;
 }
 

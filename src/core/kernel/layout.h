@@ -33,9 +33,8 @@ struct GeometryRecord {
     uvec4
         attributes;  // first vertex in `normals`, first vertex in `uvs`, number of primitives, interior medium << 16 | exterior
                      // (a transition between media where they differ)
-    vec4
-        params;  // see the kinds; triangles: x: how far off its plane tracers may find a point of any of them, -1: each has its own
-    vec4 alpha;  // x: constant alpha (used where the alpha texture is NONE); below 1 only where EFFECT_ALPHA
+    vec4 params;  // see the kinds
+    vec4 alpha;   // x: constant alpha (used where the alpha texture is NONE); below 1 only where EFFECT_ALPHA
 };
 
 // Rows of an affine transform and of its inverse.

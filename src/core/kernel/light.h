@@ -12,7 +12,7 @@ struct LightSample {
     vec3 radiance;   // arriving from there, if nothing is in between; delta lights: radiance / pdf is what counts
     float pdf;       // solid angle, times the probability of choosing the light; delta lights: the latter alone
     float distance;  // INFINITE_DISTANCE: the shadow ray leaves the scene
-    ShadowEnd end;   // of the shadow ray
+    vec3 end;        // of the shadow ray, outside of the light's surface (shadow_end)
     uint is_delta;   // 1: no ray finds this light by chance; pdf may be a density all the same (LIGHT_PASSED)
     uint light;
 };
@@ -103,7 +103,7 @@ FN bool sample_area_light(uint index, vec3 ref_p, vec2 u, INOUT(LightSample) s) 
     if (!found) return false;
     s.wi = shape.wi;
     s.distance = shape.distance;
-    s.end = shadow_end(shape.offset, shape.distance, shape.inverse_cosine);
+    s.end = shadow_end(shape.position, shape.offset, shape.ng, shape.wi, shape.distance);
     s.pdf = shape.pdf * light.emission.w;
     s.radiance = area_emission(index, shape.position, shape.ng, shape.uv, -shape.wi);
     if (HAS(EFFECT_ALPHA)) {
@@ -151,7 +151,7 @@ FN bool sample_point_light(uint index, vec3 ref_p, INOUT(LightSample) s) {
     if (!(d2 > 0.0f) || !is_finite(d2)) return false;
     s.distance = sqrt(d2);
     s.wi = to_light / s.distance;
-    s.end = shadow_end(point_offset(vec3(light.v0), s.wi), s.distance, 1.0f);
+    s.end = shadow_end(vec3(light.v0), point_offset(vec3(light.v0), s.wi), s.wi, s.wi, s.distance);
     s.radiance = point_light_intensity(light, -s.wi) / d2;
     s.pdf = light.emission.w;
     s.is_delta = 1u;
@@ -172,8 +172,7 @@ FN bool light_sample(vec3 ref_p, uint u_choice, uvec2 u_place, OUT(LightSample) 
     s.radiance = vec3(0.0f);
     s.pdf = 0.0f;
     s.distance = INFINITE_DISTANCE;
-    s.end.offset = 0.0f;
-    s.end.inverse_cosine = 0.0f;
+    s.end = vec3(0.0f);
     s.is_delta = 0u;
     uint count = scene[0].light_count;
     s.light = NONE;

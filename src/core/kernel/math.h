@@ -223,15 +223,14 @@ FN vec3 transform_error(vec4 r0, vec4 r1, vec4 r2, vec3 p, vec3 e) {
     return (g + 1.0f) * carried + g * from_rounding;
 }
 
-// How far along the unit normal ng leads out of p's error box (pbrt, 4th edition, section 6.8.6), farther than the box asks for by
+// The way along the normal ng that leads out of p's error box (pbrt, 4th edition, section 6.8.6), longer than the box asks for by
 // four times what rounding the sum with p can take back. It follows the float error at the hit, not a scene-wide epsilon.
-CONST float ROUNDED_AWAY = 4.0f * MACHINE_EPSILON;
-FN float way_out_length(vec3 p, vec3 error, vec3 ng) { return dot3(abs(ng), error + ROUNDED_AWAY * abs(p)); }
+FN vec3 way_out(vec3 p, vec3 error, vec3 ng) { return dot3(abs(ng), error + (4.0f * MACHINE_EPSILON) * abs(p)) * ng; }
 
 // Where a ray towards `direction` starts: on the direction's side of the surface at p.
 FN vec3 origin_beyond(vec3 p, vec3 way, vec3 direction) { return p + copy_sign(1.0f, dot3(direction, way)) * way; }
 FN vec3 offset_origin(vec3 p, vec3 error, vec3 ng, vec3 direction) {
-    return origin_beyond(p, way_out_length(p, error, ng) * ng, direction);
+    return origin_beyond(p, way_out(p, error, ng), direction);
 }
 
 // ---- Equal-area octahedral map (Clarberg 2008), as pbrt-v4's environment images use it: the pole is +z ------------------

@@ -11,17 +11,14 @@ struct ShapeSample {
     float distance;
     float pdf;  // 1/sr
     vec3 position;
-    float offset;          // along the normal, to where a ray is clear of the rounding error of the surface
-    float inverse_cosine;  // 1 / |cos| of the angle between wi and ng
-    vec3 ng;               // unit geometric normal, oriented as Surface's
+    float offset;  // along the normal, to where a ray is clear of the rounding error of the surface
+    vec3 ng;       // unit geometric normal, oriented as Surface's
     vec2 uv;
 };
 
-FN float inverse_of_cosine(float cosine) { return 1.0f / max(abs(cosine), 1e-20f); }
-
 // Density in solid angle, at a distance whose square is given, of a density in area.
 FN float pdf_of_area(float pdf_area, float distance_squared, float cosine) {
-    return pdf_area * distance_squared * inverse_of_cosine(cosine);
+    return pdf_area * distance_squared / max(abs(cosine), 1e-20f);
 }
 
 // wi and distance from a position and a density in area; false where the reference point is on the shape or sees its edge.
@@ -33,19 +30,16 @@ FN bool shape_sample_from_area(vec3 ref_p, float pdf_area, INOUT(ShapeSample) s)
     s.wi = to_light * (1.0f / s.distance);
     float cosine = dot3(s.ng, s.wi);
     if (cosine == 0.0f) return false;
-    s.inverse_cosine = inverse_of_cosine(cosine);
-    s.pdf = pdf_area * d2 * s.inverse_cosine;
+    s.pdf = pdf_of_area(pdf_area, d2, cosine);
     return s.pdf > 0.0f && is_finite(s.pdf);
 }
 
-// Where a shadow ray ends that comes from `distance` away to a light's surface: `offset` outside of it, and out of what the ray's own
-// arithmetic rounds (its direction, its length and the tracer's distances), which is relative to its length.
+// Where a shadow ray ends that comes along wi from `distance` away to the light's surface at p: `offset` outside of it, as a ray that
+// starts there would be, and out of what the ray's own arithmetic rounds (its direction, its length and the tracer's distances), which
+// is relative to its length.
 CONST float SHADOW_ROUNDING = 16.0f * MACHINE_EPSILON;
-FN ShadowEnd shadow_end(float offset, float distance, float inverse_cosine) {
-    ShadowEnd end;
-    end.offset = offset + SHADOW_ROUNDING * distance;
-    end.inverse_cosine = inverse_cosine;
-    return end;
+FN vec3 shadow_end(vec3 p, float offset, vec3 ng, vec3 wi, float distance) {
+    return origin_beyond(p, (offset + SHADOW_ROUNDING * distance) * ng, -wi);
 }
 // A light at a point, in a corner of the scene for instance, has no surface: it faces every ray.
 FN float point_offset(vec3 p, vec3 direction) { return way_out_length(p, MACHINE_EPSILON * abs(p), direction); }
@@ -196,7 +190,6 @@ FN bool sample_triangle_light(IN(LightRecord) light, vec3 ref_p, vec2 u, OUT(Sha
         s.distance = distance_of(s.position, ref_p);
         s.pdf = 1.0f / solid_angle;
         s.ng = triangle_light_normal(light, barycentric);
-        s.inverse_cosine = inverse_of_cosine(dot3(s.ng, s.wi));
     } else {
         barycentric = sample_uniform_triangle(u);
         s.position = p0 + barycentric.y * e1 + barycentric.z * e2;
@@ -313,7 +306,6 @@ FN bool sample_quadric_light(uint geometry, vec3 ref_p, vec2 u, OUT(ShapeSample)
             s.ng = n / length_of(n);
             s.wi = set_w / stretch;
             s.distance = t * g.params.x * stretch;
-            s.inverse_cosine = inverse_of_cosine(dot3(s.ng, s.wi));
             vec3 error;
             s.position = quadric_set_position(geometry, p, error);
             s.offset = way_out_length(s.position, error, s.ng);

@@ -16,6 +16,11 @@ FN bool surface_needs_uv() {
     return CALLED_FOR(EFFECT_TEXTURES | EFFECT_ALPHA | EFFECT_BUMP | EFFECT_ANISOTROPIC | EFFECT_LIGHT_TEXTURES);
 }
 
+// The length of way_out (math.h).
+FN float way_out_length(vec3 p, vec3 error, vec3 ng) {
+    return dot3(abs(ng), error + (4.0f * MACHINE_EPSILON) * abs(p));
+}
+
 // Squared lengths between these bounds have lost nothing to a float's range. Those of edges and distances always lie there (the host
 // sees to it), those of cross products of edges do not.
 CONST float LEAST_SQUARE = 1e-30f;
@@ -38,7 +43,7 @@ FN float length_of_area(vec3 v) {
 // How far from a triangle's plane tracers may find its point p0 + b1 e1 + b2 e2, n being e1 x e2. They start from p0, of a normal whose
 // components are differences of products: rounded, it misses a point far from p0 by more than the point's own coordinates tell. Planes
 // across an axis are exact. Slivers have hardly a plane: an offset from them stays small beside their length.
-RARE_FN float triangle_plane_error(vec3 e1, vec3 e2, float b1, float b2, float n_inverse) {
+FN float triangle_plane_error(vec3 e1, vec3 e2, float b1, float b2, float n_inverse) {
     vec3 products = abs(vec3(e1.y * e2.z, e1.z * e2.x, e1.x * e2.y)) + abs(vec3(e1.z * e2.y, e1.x * e2.z, e1.y * e2.x));
     vec3 from_p0 = b1 * abs(e1) + b2 * abs(e2);
     float most = 16.0f * (from_p0.x + from_p0.y + from_p0.z);

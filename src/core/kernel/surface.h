@@ -23,18 +23,11 @@ struct Hit {
     uint primitive;
 };
 
-// Where a shadow ray ends: outside of the surface that it comes to, as a ray that starts there would be. The distance to the plane
-// through its point is along the ray so much longer as the cosine is less than 1.
-struct ShadowEnd {
-    float offset;          // from that plane
-    float inverse_cosine;  // 1 / |cos| of the angle between the ray and the normal; 0: the ray ends nowhere
-};
-
 // A point on a surface, in world space.
 struct Surface {
     vec3 position;
     vec3 error;  // bound of the absolute rounding error of `position`, per coordinate: rays start outside of it
-    vec3 way;    // out of the error, along ng (way_out_length, math.h); of surfaces that rays found
+    vec3 way;    // out of the error, along ng (way_out, math.h); of surfaces that rays found
     vec3 ng;     // unit geometric normal, on the side that pbrt calls outside (see reference: orientation rules)
     vec3 ns;     // unit shading normal
     vec3 dpdu;   // of the surface; the shading tangent is its part orthogonal to ns

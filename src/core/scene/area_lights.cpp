@@ -1,7 +1,5 @@
 #include "core/scene/area_lights.h"
 
-#include "core/scene/shapes/plane_error.h"
-
 #include "core/scene/lights/common.h"
 
 #include <fmt/format.h>
@@ -82,6 +80,8 @@ const RegisterAreaLight diffuse("diffuse", "Emits the same radiance in all direc
 
 }  // namespace
 
+constexpr double kHalfUlp = 0x1p-24;  // of 1: eps, as MACHINE_EPSILON (core/kernel/math.h)
+
 kernel::LightRecord triangle_light(const glm::vec3& p0, const glm::vec3& p1, const glm::vec3& p2,
                                    uint32_t geometry_flags) {
     const glm::dvec3 a(p0), b(p1), c(p2);
@@ -99,11 +99,13 @@ kernel::LightRecord triangle_light(const glm::vec3& p0, const glm::vec3& p1, con
     light.normal = {normal, smooth ? 1.0f : 0.0f};
     light.v1 = {p1, float(radius)};
     light.v2 = {p2, 1.0f / light.v0.w};
-    // How far along the normal shadow rays end, anywhere on the triangle (as way_out_length says it for a point): by the rounding of its
-    // corners' coordinates, and of its plane as tracers find it from one of them.
-    const glm::dvec3 most = glm::max(glm::abs(a), glm::max(glm::abs(b), glm::abs(c)));
-    light.ids.z = std::bit_cast<uint32_t>(
-        float(12.0 * kHalfUlp * glm::dot(glm::abs(normal), most) + triangle_plane_error(b - a, c - a)));
+    // How far along the normal shadow rays end, anywhere on the triangle (as way_out and triangle_plane_error say it for a point): by the
+    // rounding of its corners' coordinates, and of its plane as tracers find it from one of them.
+    const glm::dvec3 most = glm::max(glm::abs(a), glm::max(glm::abs(b), glm::abs(c))), n = glm::abs(normal);
+    const glm::dvec3 e = glm::max(glm::abs(b - a), glm::abs(c - a)), u = glm::abs(b - a), v = glm::abs(c - a);
+    const glm::dvec3 products(u.y * v.z + u.z * v.y, u.z * v.x + u.x * v.z, u.x * v.y + u.y * v.x);
+    const double plane = length > 0.0 ? std::min(glm::dot(e, products) / length, 16.0 * (e.x + e.y + e.z)) : 0.0;
+    light.ids.z = std::bit_cast<uint32_t>(float((12.0 * glm::dot(n, most) + 6.0 * plane) * kHalfUlp));
     return light;
 }
 

@@ -1,7 +1,6 @@
 #include "core/scene/shapes/mesh.h"
 
 #include "core/scene/area_lights.h"
-#include "core/scene/shapes/plane_error.h"
 
 #include <fmt/format.h>
 #include <glm/glm.hpp>
@@ -215,7 +214,6 @@ void add_usable(ShapeContext& context, Mesh&& mesh) {
     geometry.data.w = uint32_t(scene.positions.size() / 3);
     geometry.attributes.x = mesh.normals.empty() ? kernel::NONE : uint32_t(scene.normals.size() / 3);
     geometry.attributes.y = mesh.uvs.empty() ? kernel::NONE : uint32_t(scene.uvs.size() / 2);
-    if (mesh.corners == 3) geometry.params.x = mesh_plane_error(mesh);
     if (context.area_light) add_lights(context, mesh, index);
     append(scene.indices, std::move(mesh.indices));
     append(scene.positions, std::move(mesh.positions));
