@@ -27,8 +27,10 @@
 // An array of pairs of vec4, which READ_PAIR reads as a VecPair at once (see below).
 #define SCENE_RO_PAIRS(binding_, name) SCENE_RO(binding_, VecPair, name)
 #define READ_PAIR(name, i) name[i]
-#define BUFFER_RO(binding_, T, name) const T* __restrict name = static_cast<const T*>(kernel_buffers_.at(binding_, #name, sizeof(T)));
-#define BUFFER_RW(binding_, T, name) T* __restrict name = static_cast<T*>(kernel_buffers_.at(binding_, #name, sizeof(T)));
+#define BUFFER_RO(binding_, T, name) \
+    const T* __restrict name = static_cast<const T*>(kernel_buffers_.at(binding_, #name, sizeof(T)));
+#define BUFFER_RW(binding_, T, name) \
+    T* __restrict name = static_cast<T*>(kernel_buffers_.at(binding_, #name, sizeof(T)));
 #define HAS(effect) ((kEffects & (effect)) != 0u)
 #define EFFECTS_LOW(effects) uint(effects)
 #define EFFECTS_HIGH(effects) uint((effects) >> 32u)
