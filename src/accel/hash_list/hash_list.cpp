@@ -1,17 +1,12 @@
-#include "core/photon_grid.h"
-#include "accel/linked_list/linked_list.params.h"
+#include "accel/linked_list/list_grid.h"
 
 namespace lampyris {
 namespace {
 
-class HashList : public PhotonMap {
+class HashList : public ListGrid {
  public:
-    LinkedListParams params;
-    PhotonMapCapabilities capabilities() const override { return {.exact = true, .fixed_order = params.order == 0}; }
     // The head, without an atomic; for the order, the key and link of each.
-    ConstructionTraffic traffic() const override {
-        return {.accesses = params.order == 0 ? 2.0 : 1.0, .one_thread = true};
-    }
+    ConstructionTraffic traffic() const override { return {.accesses = keyed() ? 2.0 : 1.0, .one_thread = true}; }
 
  protected:
     static constexpr const char* kInsert = "accel/hash_list/hash_list_insert.kernel.h";
@@ -22,20 +17,11 @@ class HashList : public PhotonMap {
     std::vector<std::string> kernels() const override { return {kInsert, kOrder, kPlace}; }
 
     void construct(const PhotonSet& photons) override {
-        const bool keyed = params.order == 0;
-        const size_t count = photons.count;
         const uint32_t chunks = (photons.count + kChunk - 1) / kChunk;
-        kernel::PhotonGrid grid = make_grid(photons, params.cell_size);
-        grid.entries = table_entries(photons, params.table_size);
-        grid.option = keyed;
-        upload("grid", grid);
-        const BufferHandle heads = keep("heads", size_t(grid.entries) * 4);
-        keep("links", keyed ? count * 8 : 8);
-        keep("nodes", count * 16);
-        clear(heads, size_t(grid.entries) * 4);
+        const uint32_t chains = open_chains(photons);
         run_serially(kInsert, chunks);
-        if (!keyed) return;
-        run_serially(kOrder, (batch_count(grid.entries) + kSpan - 1) / kSpan);
+        if (!keyed()) return;
+        run_serially(kOrder, (batch_count(chains) + kSpan - 1) / kSpan);
         run_serially(kPlace, chunks);
     }
 };
