@@ -213,6 +213,40 @@ TEST_P(ShadowRayTest, ASphereLightsWhatItTouches) {
     EXPECT_NEAR(image.mean_luminance(), 0.5 / (d * d), 0.028);
 }
 
+// A lamp in a closed black box that fits it closely lights nothing: also not at its rims, along rays that graze it and would end
+// beside the box's wall if they were cut short by an offset over a cosine.
+TEST_P(ShadowRayTest, NothingLeavesAClosedBox) {
+    const std::string cube =
+        "Shape \"trianglemesh\" \"point3 P\" [ -1 -1 -1 1 -1 -1 1 1 -1 -1 1 -1 -1 -1 1 1 -1 1 1 1 1 -1 1 1 ] \"integer "
+        "indices\" [ 0 2 3 0 1 2 4 6 5 4 7 6 0 5 1 0 4 5 3 6 7 3 2 6 0 7 4 0 3 7 1 6 2 1 5 6 ]\n";
+    const std::string can =
+        "Shape \"cylinder\" AttributeBegin Translate 0 0 1 Shape \"disk\" AttributeEnd\n"
+        "AttributeBegin Translate 0 0 -1 Rotate 180 1 0 0 Shape \"disk\" AttributeEnd\n";
+    for (const std::string& shape : {cube, can}) {
+        for (const std::string stretch : {".3 .3 .3", ".3 .3 1e-3"}) {
+            const auto light_on_floor = [&](const std::string& box) {
+                return render(
+                           "LookAt 0 0.5 0  0 0 0  0 0 1\n"
+                           "Camera \"orthographic\" \"float screenwindow\" [ -.4 .4 -.4 .4 ]\n"
+                           "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\n"
+                           "Integrator \"path\" \"integer maxdepth\" 1\nWorldBegin\n"
+                           "Material \"diffuse\" \"rgb reflectance\" [ 0.5 0.5 0.5 ]\n" +
+                               kFloor +
+                               "Material \"diffuse\" \"rgb reflectance\" [ 0 0 0 ]\n"
+                               "Translate 0 1 0 Rotate 31 1 2 3 Scale " +
+                               stretch + "\n" + box +
+                               "AreaLightSource \"diffuse\" \"rgb L\" [ 1e9 1e9 1e9 ] \"bool twosided\" true\n"
+                               "Scale .99 .99 .99\n" +
+                               shape,
+                           {}, 256)
+                    .mean_luminance();
+            };
+            EXPECT_GT(light_on_floor(""), 1e6) << shape << stretch;
+            EXPECT_EQ(light_on_floor(shape), 0.0) << shape << stretch;
+        }
+    }
+}
+
 // Under a ceiling 0.99 away, directions within acos(0.99) meet it before 1: by the cosine a share of 1 - 0.99^2. Beyond 1, none.
 TEST_P(ShadowRayTest, AmbientOcclusionSeesToItsEnd) {
     const auto seen = [&](double ceiling) {
