@@ -2,28 +2,22 @@
 #include "core/plugin.h"
 
 #include "core/error.h"
+#include "support/temporary_folder.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
 #include <fstream>
 #include <string>
 
 namespace lampyris {
 namespace {
 
-namespace fs = std::filesystem;
-
 class PluginErrors : public testing::Test {
  protected:
-    PluginErrors() { fs::create_directories(folder_); }
-    ~PluginErrors() override { fs::remove_all(folder_); }
-
     std::string write(const std::string& name, const std::string& bytes) const {
         std::ofstream(folder_ / name, std::ios::binary) << bytes;
-        return (folder_ / name).string();
+        return folder_ / name;
     }
     static std::string message(const std::string& file) {
         try {
@@ -36,7 +30,7 @@ class PluginErrors : public testing::Test {
     // What a plugin's file holds before its ABI. Put together here, so that this program, which is no plugin, does not hold
     // it whole: one of the tests has it refused for that.
     static std::string mark() { return std::string("lampyris_plugin") + "_abi="; }
-    fs::path folder_ = fs::temp_directory_path() / fmt::format("lampyris-plugin-test-{}", getpid());
+    const test::TemporaryFolder folder_;
 };
 
 TEST_F(PluginErrors, AMissingFileIsNamed) {

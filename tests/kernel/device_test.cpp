@@ -3,6 +3,7 @@
 #include "core/device.h"
 #include "core/error.h"
 #include "core/kernel_types.h"
+#include "support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +11,6 @@
 #include <filesystem>
 #include <fstream>
 #include <numeric>
-#include <unistd.h>
 
 namespace lampyris {
 namespace {
@@ -190,11 +190,7 @@ class ShaderCacheTest : public testing::Test {
  protected:
     void SetUp() override {
         if (!has_vulkan()) GTEST_SKIP() << "no Vulkan device";
-        folder_ =
-            std::filesystem::path(testing::TempDir()) / ("lampyris-shader-cache-test-" + std::to_string(getpid()));
-        std::filesystem::remove_all(folder_);
     }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
     // Compiles and runs on a new device; the value of results[3].
     float run(uint64_t effects = 0) {
         const auto device = create_device("vulkan", with({{"cache", folder_.string()}}));
@@ -209,10 +205,10 @@ class ShaderCacheTest : public testing::Test {
     }
     std::vector<std::filesystem::path> entries() const {
         std::vector<std::filesystem::path> found;
-        for (const auto& entry : std::filesystem::directory_iterator(folder_)) found.push_back(entry.path());
+        for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) found.push_back(entry.path());
         return found;
     }
-    std::filesystem::path folder_;
+    const test::TemporaryFolder folder_;
     size_t spirv_bytes_ = 0;
 };
 

@@ -112,7 +112,8 @@ TEST_P(NegativeSky, IsBlack) {
     const std::string text =
         "LookAt 0 0 3.9  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 36\nFilm \"rgb\" \"integer xresolution\" 8 "
         "\"integer yresolution\" 8\nWorldBegin\n" +
-        light("infinite", write_picture("black", std::vector<float>(size_t(3 * kSide * kSide), -1.0f))) +
+        light("infinite",
+              write_picture("black_" + name_of(GetParam()), std::vector<float>(size_t(3 * kSide * kSide), -1.0f))) +
         "Shape \"trianglemesh\" \"point3 P\" [ -1 -1 0 1 -1 0 0 1 0 ]\n";
     for (const char* integrator : {"path", "sppm:direct=photons", "photon_map:direct=photons,photons=1000"}) {
         SCOPED_TRACE(integrator);

@@ -2,12 +2,12 @@
 // as pbrt-v4 shades a triangle whose interpolated normal is NaN; all others keep theirs. Equal means to the bit.
 #include "support/build_text.h"
 #include "support/render.h"
+#include "support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <limits>
 
@@ -37,9 +37,6 @@ constexpr Vertices kGood{{{{-1, -1, 0}, {-0.5f, 0, 1}, {0, 0}},
 
 class UnusableNormals : public testing::TestWithParam<std::string> {
  protected:
-    void SetUp() override { std::filesystem::create_directories(folder_); }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-
     std::string ply(const Vertices& vertices) const {
         std::ofstream file(folder_ / "mesh.ply", std::ios::binary);
         file << "ply\nformat binary_little_endian 1.0\nelement vertex 6\n";
@@ -80,8 +77,7 @@ class UnusableNormals : public testing::TestWithParam<std::string> {
     std::vector<std::string> warnings(const std::string& scene) const {
         return build_text(scene, false, {}, folder_.string()).warnings;
     }
-    const std::filesystem::path folder_ =
-        std::filesystem::path(testing::TempDir()) / ("unusable-normals-" + GetParam());
+    const TemporaryFolder folder_;
 };
 
 TEST_P(UnusableNormals, FacesThatUseThemAreFlat) {

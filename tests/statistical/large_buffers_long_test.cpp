@@ -1,6 +1,7 @@
 // large_buffers_test at the sizes that people ask for: films, scenes and photons beyond the largest binding of lavapipe (134 MB), against
 // the CPU. Up to 3 GB of memory, five to fifteen minutes.
 #include "support/agreement.h"
+#include "support/temporary_folder.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -8,9 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
-#include <unistd.h>
 
 namespace lampyris::test {
 namespace {
@@ -49,8 +48,7 @@ TEST(LargeBuffersLong, FilmsOf1080Lines) {
 TEST(LargeBuffersLong, TenMillionTriangles) {
     if (!has_vulkan()) GTEST_SKIP() << "no Vulkan device";
     constexpr uint32_t kSide = 2237;  // vertices; 2 * 2236^2 triangles
-    const auto folder = std::filesystem::path(testing::TempDir()) / fmt::format("lampyris-large-buffers-{}", getpid());
-    std::filesystem::create_directories(folder);
+    const TemporaryFolder folder;
     {
         std::ofstream file(folder / "hills.ply", std::ios::binary);
         file << fmt::format(
@@ -92,7 +90,6 @@ Material "diffuse" "rgb reflectance" [ 0.7 0.6 0.5 ]
 Shape "plymesh" "string filename" "hills.ply"
 )",
                 settings, folder.string());
-    std::filesystem::remove_all(folder);
 }
 
 // 10^7 paths a pass leave some 2 * 10^7 photons of 32 bytes in this closed box, in every structure.

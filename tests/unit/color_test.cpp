@@ -3,13 +3,12 @@
 
 #include "core/error.h"
 #include "core/image/image_io.h"
+#include "support/temporary_folder.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 
 namespace lampyris {
@@ -110,8 +109,8 @@ TEST(Color, NonFiniteLightIsShownNotPropagated) {
 }
 
 TEST(Color, PngHoldsWhatTheViewShows) {
-    const std::string path =
-        (std::filesystem::temp_directory_path() / ("lampyris-view-" + std::to_string(::getpid()) + ".png")).string();
+    const test::TemporaryFolder folder;
+    const std::string path = folder / "view.png";
     const Image image = greys({0.05f, 0.5f, 2.0f});
     WriteOptions options;
     options.view = "ACES";
@@ -122,7 +121,6 @@ TEST(Color, PngHoldsWhatTheViewShows) {
     for (size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(std::lround(read.pixels[i] * 255.0f), expected[i]);
     options.view = "nonsense";
     EXPECT_THROW(write_image(path, image, options), InputError);
-    std::filesystem::remove(path);
 }
 
 }  // namespace

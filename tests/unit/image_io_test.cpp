@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "core/file.h"
 #include "core/image/pfm.h"
+#include "support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 #include <OpenImageIO/imageio.h>
@@ -25,16 +26,11 @@ namespace fs = std::filesystem;
 
 class ImageIo : public testing::Test {
  protected:
-    void SetUp() override {
-        folder_ = fs::temp_directory_path() / ("lampyris-image-io-" + std::to_string(::getpid()));
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-    std::string path(const std::string& name) const { return (folder_ / name).string(); }
+    std::string path(const std::string& name) const { return folder_ / name; }
     void write_bytes(const std::string& name, const std::string& bytes) const {
         std::ofstream(path(name), std::ios::binary) << bytes;
     }
-    fs::path folder_;
+    const test::TemporaryFolder folder_;
 };
 
 // No two pixels or channels alike, and negative, tiny, huge and non-finite numbers among them.
@@ -244,7 +240,7 @@ TEST_F(ImageIo, UnknownExtensionListsTheKnownOnes) {
     EXPECT_NE(message.find(".exr, .pfm, .png"), std::string::npos) << message;
     EXPECT_THROW(check_image_output(path("missing-folder/a.exr")), InputError);
     EXPECT_NO_THROW(check_image_output(path("a.EXR")));
-    EXPECT_TRUE(fs::is_empty(folder_));
+    EXPECT_TRUE(fs::is_empty(folder_.path()));
 }
 
 TEST_F(ImageIo, AFullDiskIsToldAndTheImageSaved) {
@@ -283,7 +279,7 @@ TEST_F(ImageIo, AFailedWriteLeavesTheOldFileAlone) {
     EXPECT_EQ(WEXITSTATUS(status), 42);
     std::ifstream file(target);
     EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "first");
-    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()),
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), fs::directory_iterator()),
               1);  // no temporary file is left
 }
 
@@ -291,7 +287,7 @@ TEST_F(ImageIo, AFolderWithoutPermissionIsTold) {
     fs::create_directory(path("closed"));
     fs::permissions(path("closed"),
                     fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read | fs::perms::others_exec);
-    fs::permissions(folder_, fs::perms::all);
+    fs::permissions(folder_.path(), fs::perms::all);
     const pid_t child = ::fork();
     ASSERT_GE(child, 0);
     if (child == 0) {

@@ -4,6 +4,7 @@
 #include "core/device.h"
 #include "support/build_text.h"
 #include "support/render.h"
+#include "support/temporary_folder.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -11,7 +12,6 @@
 #include <time.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <fstream>
 #include <functional>
 
@@ -185,8 +185,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, LoadingTime, testing::ValuesIn(kinds()), [](cons
 
 // Of many files, each of which changes a coordinate system while another thousand are known.
 TEST(LoadingTimeOfFiles, IsInProportion) {
-    const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "lampyris-many-files";
-    std::filesystem::create_directories(folder);
+    const TemporaryFolder folder;
     const auto load = [&](int n) {
         std::string world = repeat(n, [](int i) { return fmt::format("CoordinateSystem \"c{}\"\n", i); });
         for (int i = 0; i < n; ++i) {
@@ -202,7 +201,6 @@ TEST(LoadingTimeOfFiles, IsInProportion) {
         return seconds;
     };
     expect_proportion("files", load, 5000);
-    std::filesystem::remove_all(folder);
 }
 
 // What a device makes of the scene: acceleration structures and buffers.

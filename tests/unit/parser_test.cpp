@@ -1,10 +1,10 @@
 // Directives and what they make: the graphics state, its snapshots in entities, names, blocks, included files.
 #include "core/scene/description.h"
+#include "support/temporary_folder.h"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <gtest/gtest.h>
-#include <unistd.h>
 #include <zlib.h>
 
 #include <cmath>
@@ -47,23 +47,19 @@ glm::vec3 placed(const std::string& text, const glm::vec3& p) {
 
 class Folder {
  public:
-    Folder() : path_(std::filesystem::path(testing::TempDir()) / ("lampyris_parser_test_" + std::to_string(getpid()))) {
-        std::filesystem::create_directories(path_);
-    }
-    ~Folder() { std::filesystem::remove_all(path_); }
     void write(const std::string& name, const std::string& text) {
-        std::filesystem::create_directories((path_ / name).parent_path());
-        std::ofstream(path_ / name, std::ios::binary) << text;
+        std::filesystem::create_directories(std::filesystem::path(path(name)).parent_path());
+        std::ofstream(path(name), std::ios::binary) << text;
     }
     void write_gzip(const std::string& name, const std::string& text) {
-        gzFile file = gzopen((path_ / name).c_str(), "wb");
+        gzFile file = gzopen(path(name).c_str(), "wb");
         gzwrite(file, text.data(), static_cast<unsigned>(text.size()));
         gzclose(file);
     }
-    std::string path(const std::string& name = "") const { return (path_ / name).string(); }
+    std::string path(const std::string& name = "") const { return folder_ / name; }
 
  private:
-    std::filesystem::path path_;
+    test::TemporaryFolder folder_;
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "core/scene/ply.h"
 
 #include "core/error.h"
+#include "support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 #include <zlib.h>
@@ -160,15 +161,16 @@ TEST(Ply, ReadsGzip) {
 }
 
 TEST(Ply, ReadsFromAFile) {
-    const std::string path = testing::TempDir() + "lampyris_ply_test.ply";
+    const test::TemporaryFolder folder;
+    const std::string path = folder / "mesh.ply";
     std::ofstream(path, std::ios::binary) << usual();
     EXPECT_EQ(read_ply(path).triangles.size(), 3u);
     std::ofstream(path, std::ios::binary) << gzip(usual());  // told by its bytes, not by its name
     EXPECT_EQ(read_ply(path).triangles.size(), 3u);
     std::remove(path.c_str());
     EXPECT_THROW(read_ply(path), InputError);
-    EXPECT_THROW(read_ply(testing::TempDir()), InputError);  // a directory
-    EXPECT_THROW(read_ply("/dev/zero"), InputError);         // a device, which never ends
+    EXPECT_THROW(read_ply(folder.string()), InputError);  // a directory
+    EXPECT_THROW(read_ply("/dev/zero"), InputError);      // a device, which never ends
 }
 
 TEST(Ply, EveryTruncationIsAnError) {

@@ -2,33 +2,18 @@
 #include "core/image/image_io.h"
 #include "core/scene/image_store.h"
 #include "support/build_text.h"
+#include "support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 
-#include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 
 namespace lampyris {
 namespace {
 
 using namespace kernel;
-
-// A folder for one test, removed with everything in it.
-class Folder {
- public:
-    Folder() : path_(std::filesystem::temp_directory_path() / ("lampyris-texture-" + std::to_string(getpid()))) {
-        std::filesystem::create_directories(path_);
-    }
-    ~Folder() { std::filesystem::remove_all(path_); }
-    std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-    std::string path() const { return path_.string(); }
-
- private:
-    std::filesystem::path path_;
-};
 
 // A triangle with the material given, and the textures before it.
 BuiltText build_textured(const std::string& textures, const std::string& material, const std::string& directory = ".") {
@@ -118,10 +103,10 @@ TEST(TextureBuilder, FloatAndSpectrumNamesAreApart) {
 }
 
 TEST(TextureBuilder, UnusedTexturesCostNothingButAreChecked) {
-    const Folder folder;
+    const test::TemporaryFolder folder;
     write_png(folder / "a.png", 1, 1, {10, 20, 30});
     const BuiltText fine =
-        build_textured("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\"", "", folder.path());
+        build_textured("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\"", "", folder.string());
     EXPECT_EQ(fine.all_errors(), "");
     EXPECT_TRUE(fine.scene().texture_ops.empty());
     EXPECT_TRUE(fine.scene().images.empty());
@@ -130,11 +115,11 @@ TEST(TextureBuilder, UnusedTexturesCostNothingButAreChecked) {
 }
 
 TEST(TextureBuilder, ErrorsSayWhatIsWrong) {
-    const Folder folder;
+    const test::TemporaryFolder folder;
     write_png(folder / "wood.png", 1, 1, {10, 20, 30});
     std::ofstream(folder / "broken.png") << "this is no picture";
     const auto image = [&](const std::string& more) {
-        return build_textured("Texture \"t\" \"spectrum\" \"imagemap\" " + more, kTextured, folder.path());
+        return build_textured("Texture \"t\" \"spectrum\" \"imagemap\" " + more, kTextured, folder.string());
     };
     expect_error(image("\"string filename\" \"wod.png\""), "did you mean \"wood.png\"");
     expect_error(image("\"string filename\" \"broken.png\""), "cannot read the image");
@@ -174,7 +159,7 @@ TEST(TextureBuilder, TexturesThatGrowWithoutBoundAreRefused) {
 // ---- Images ----------------------------------------------------------------------------------------------------------
 
 TEST(TextureBuilder, OneFileIsLoadedOnce) {
-    const Folder folder;
+    const test::TemporaryFolder folder;
     write_png(folder / "a.png", 2, 2, {0, 0, 0, 255, 0, 0, 0, 255, 0, 0, 0, 255});
     const BuiltText text = build_textured(
         "Texture \"a\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\"\n"
@@ -184,7 +169,7 @@ TEST(TextureBuilder, OneFileIsLoadedOnce) {
         "filter\" \"EWA\"\n"
         "Texture \"ab\" \"spectrum\" \"mix\" \"texture tex1\" \"a\" \"texture tex2\" \"b\"\n"
         "Texture \"t\" \"spectrum\" \"mix\" \"texture tex1\" \"ab\" \"texture tex2\" \"c\"",
-        kTextured, folder.path());
+        kTextured, folder.string());
     ASSERT_EQ(text.all_errors(), "");
     const Scene& scene = text.scene();
     ASSERT_EQ(scene.images.size(), 3u);
@@ -199,7 +184,7 @@ TEST(TextureBuilder, OneFileIsLoadedOnce) {
     const BuiltText scaled = build_textured(
         "Texture \"a\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\" \"float scale\" 3\n"
         "Texture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"a\" \"float scale\" 0.5",
-        kTextured, folder.path());
+        kTextured, folder.string());
     ASSERT_EQ(kinds(program_of(scaled)), Kinds{TEXTURE_IMAGE});
     EXPECT_EQ(program_of(scaled)[0].a.x, 1.5f);
 }
