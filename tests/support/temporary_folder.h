@@ -13,7 +13,8 @@ namespace lampyris::test {
 class TemporaryFolder {
  public:
     TemporaryFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "lampyris-test-XXXXXX").string();
+        // mkdtemp puts a name that is free in place of the six letters.
+        std::string name = (std::filesystem::temp_directory_path() / ("lampyris-test-" + std::string(6, 'X'))).string();
         if (!mkdtemp(name.data()))
             throw std::filesystem::filesystem_error("mkdtemp", name, std::error_code(errno, std::generic_category()));
         path_ = name;
