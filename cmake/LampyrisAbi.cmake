@@ -1,9 +1,10 @@
 # Writes OUTPUT, a header that says for which Lampyris a plugin is built: VERSION and a hash of the headers it sees.
-# Run as a script by the build, whenever one of HEADERS (a ;-list below SOURCE_DIR) changes.
+# Run as a script by the build, whenever one of HEADERS (a ;-list) changes.
 set(all "")
 foreach(header IN LISTS HEADERS)
-  file(SHA256 ${SOURCE_DIR}/${header} hash)
-  string(APPEND all "${header} ${hash}\n")
+  file(SHA256 ${header} hash)
+  cmake_path(GET header FILENAME name)
+  string(APPEND all "${name} ${hash}\n")
 endforeach()
 string(SHA256 hash "${all}${COMPILER}")
 string(SUBSTRING ${hash} 0 12 hash)

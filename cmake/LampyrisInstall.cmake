@@ -4,14 +4,14 @@ include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/Lampyris)
 
 # Which Lampyris a plugin is built for: the build makes the header anew when one of those that plugins see changes.
-file(GLOB_RECURSE plugin_headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/src src/core/*.h)
-list(TRANSFORM plugin_headers PREPEND ${PROJECT_SOURCE_DIR}/src/ OUTPUT_VARIABLE plugin_header_files)
+file(GLOB_RECURSE plugin_headers CONFIGURE_DEPENDS src/core/*.h)
+list(APPEND plugin_headers ${material_headers})
 set(abi_header ${PROJECT_BINARY_DIR}/generated/core/plugin_abi.h)
 add_custom_command(OUTPUT ${abi_header}
-  COMMAND ${CMAKE_COMMAND} -DOUTPUT=${abi_header} -DSOURCE_DIR=${PROJECT_SOURCE_DIR}/src "-DHEADERS=${plugin_headers}"
+  COMMAND ${CMAKE_COMMAND} -DOUTPUT=${abi_header} "-DHEADERS=${plugin_headers}"
     -DVERSION=${PROJECT_VERSION} "-DCOMPILER=${CMAKE_CXX_COMPILER_ID} ${LAMPYRIS_SANITIZE}"
     -P ${PROJECT_SOURCE_DIR}/cmake/LampyrisAbi.cmake
-  DEPENDS ${plugin_header_files} ${PROJECT_SOURCE_DIR}/cmake/LampyrisAbi.cmake
+  DEPENDS ${plugin_headers} ${PROJECT_SOURCE_DIR}/cmake/LampyrisAbi.cmake
   COMMENT "Hashing the headers that plugins see" VERBATIM)
 target_sources(lampyris PRIVATE ${abi_header})
 
@@ -24,6 +24,9 @@ if(TARGET lampyris_program)
 endif()
 install(EXPORT LampyrisTargets NAMESPACE Lampyris:: DESTINATION ${package_dir})
 install(DIRECTORY src/core DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lampyris FILES_MATCHING PATTERN *.h PATTERN *.glsl)
+# Materials are compiled into each kernel, a plugin's, too.
+install(DIRECTORY src/materials ${PROJECT_BINARY_DIR}/generated/materials ${LAMPYRIS_EXTRA_MATERIALS}
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lampyris FILES_MATCHING PATTERN *.h)
 # Photon maps and their consumers, for those of plugins to be built with.
 install(DIRECTORY src/accel src/integrators DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lampyris
   FILES_MATCHING PATTERN *.gather.h PATTERN *.consumer.h PATTERN *.layout.h PATTERN *.params.h

@@ -1,23 +1,23 @@
-# lampyris_add_kernels(TARGET BASE dir KERNELS files... HEADERS files... GATHERS files... CONSUMERS files...
+# lampyris_add_kernels(TARGET BASE dirs... KERNELS files... HEADERS files... GATHERS files... CONSUMERS files...
 #                      OTHER_GATHERS names... OTHER_CONSUMERS names...)
 #
 # Makes kernel files part of a target, for both compilers: each *.kernel.h becomes C++ translation units (one per effect
 # variant, see backends/cpu/variants) and, with the headers, its text is embedded (.incbin) for glslang at run time.
-# A file is known by its path below BASE ("integrators/path/path.radiance.h"); the kernel's name is the file's name.
+# A file is known by its path below a folder of BASE ("integrators/path/path.radiance.h"); the kernel's name is the file's name.
 #
 # A gather kernel is a pair of files, CONSUMER+GATHER (src/core/kernel/gather.h): each gather file is built with each
 # consumer, and with the consumers that another target has (OTHER_..., by name), and the other way round.
 set(LAMPYRIS_KERNELS_DIR ${CMAKE_CURRENT_LIST_DIR})
 
 function(lampyris_add_kernels target)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "BASE" "KERNELS;HEADERS;GATHERS;CONSUMERS;OTHER_GATHERS;OTHER_CONSUMERS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "BASE;KERNELS;HEADERS;GATHERS;CONSUMERS;OTHER_GATHERS;OTHER_CONSUMERS")
   set(out ${CMAKE_CURRENT_BINARY_DIR}/kernels/${target})
   string(MAKE_C_IDENTIFIER "lampyris_text_${target}" symbols)
   set(content "#include \"core/kernel_registry.h\"\n")
   set(index 0)
   set(files ${arg_KERNELS} ${arg_HEADERS} ${arg_GATHERS} ${arg_CONSUMERS})
   foreach(file ${files})
-    file(RELATIVE_PATH name ${arg_BASE} ${file})
+    lampyris_kernel_name(${file} "${arg_BASE}" name)
     if(name MATCHES "\\+")
       message(FATAL_ERROR "${file}: a kernel's folder and name cannot have a '+', which joins the files of a kernel of several; name it otherwise")
     endif()
@@ -38,13 +38,13 @@ function(lampyris_add_kernels target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD OFF)
 
   foreach(file ${arg_KERNELS})
-    file(RELATIVE_PATH name ${arg_BASE} ${file})
+    lampyris_kernel_name(${file} "${arg_BASE}" name)
     lampyris_kernel_units(${target} ${out} "${name}" ${file})
   endforeach()
 
   set(gathers "")
   foreach(file ${arg_GATHERS})
-    file(RELATIVE_PATH name ${arg_BASE} ${file})
+    lampyris_kernel_name(${file} "${arg_BASE}" name)
     lampyris_glsl_only(${file} glsl_only)
     if(NOT glsl_only)
       list(APPEND gathers ${name})
@@ -58,7 +58,7 @@ function(lampyris_add_kernels target)
     endif()
   endforeach()
   foreach(file ${arg_CONSUMERS})
-    file(RELATIVE_PATH name ${arg_BASE} ${file})
+    lampyris_kernel_name(${file} "${arg_BASE}" name)
     foreach(gather ${gathers} ${other_gathers})
       lampyris_kernel_units(${target} ${out} "${name}+${gather}" ${file})
     endforeach()
@@ -69,6 +69,19 @@ function(lampyris_add_kernels target)
     endforeach()
   endforeach()
   target_include_directories(${target} PRIVATE ${arg_BASE})
+endfunction()
+
+# How kernels include a file: by its path below the first of `bases` that it is in.
+function(lampyris_kernel_name file bases result)
+  foreach(base IN LISTS bases)
+    cmake_path(IS_PREFIX base ${file} NORMALIZE below)
+    if(below)
+      file(RELATIVE_PATH name ${base} ${file})
+      set(${result} ${name} PARENT_SCOPE)
+      return()
+    endif()
+  endforeach()
+  message(FATAL_ERROR "${file}: in none of ${bases}")
 endfunction()
 
 # What the configuration reads of a file may change: configure again then.

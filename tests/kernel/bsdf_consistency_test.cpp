@@ -188,7 +188,7 @@ TEST(BsdfConsistency, NothingDivergesForAnyInput) {
         p.kind = {random() % 8,
                   random() % 2 * kernel::MATERIAL_ENERGY_COMPENSATION + random() % 2 * kernel::MATERIAL_EXACT_COAT,
                   random() % 20, random() % 3};
-        bool index = p.kind.x == kernel::MATERIAL_CONDUCTOR || p.kind.x == kernel::MATERIAL_COATED_CONDUCTOR;
+        bool index = p.kind.x == kernel::MATERIAL_CONDUCTOR || p.kind.x == kernel::MATERIAL_COATEDCONDUCTOR;
         for (int c = 0; c < 3; ++c) {
             p.color0[c] = index ? pick({0, 0.2, 1, 1.5, 40, 1e20, uniform(random)}) : share();
             p.color1[c] = index ? pick({0, 0, 3, 100, 1e20, uniform(random)}) : share();

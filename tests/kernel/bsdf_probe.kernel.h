@@ -27,7 +27,7 @@ struct BsdfProbe {
     vec4 color0;
     vec4 color1;
     vec4 albedo;
-    vec4 alpha;  // x, y; of the base: z, w
+    vec4 alpha;  // x, y; of coatedconductor's coat: z, w
     vec4 coat;   // eta, thickness, g
     vec4 wo;
 };
@@ -37,19 +37,17 @@ BUFFER_RO(1, vec4, inputs)
 BUFFER_RW(2, vec4, results)
 
 FN Bsdf probed_bsdf(IN(BsdfProbe) p) {
-    vec3 color0 = vec3(p.color0);
-    vec3 color1 = vec3(p.color1);
-    vec2 alpha = vec2(p.alpha.x, p.alpha.y);
-    vec2 base = vec2(p.alpha.z, p.alpha.w);
-    Bsdf coat = bsdf_coat(p.coat.x, alpha, p.coat.y, vec3(p.albedo), p.coat.z, p.kind.z, p.kind.w);
-    if (p.kind.x == MATERIAL_DIFFUSE) return bsdf_diffuse(color0);
-    if (p.kind.x == MATERIAL_DIFFUSE_TRANSMISSION) return bsdf_diffuse_transmission(color0, color1);
-    if (p.kind.x == MATERIAL_CONDUCTOR) return bsdf_conductor(color0, color1, alpha, p.kind.y);
-    if (p.kind.x == MATERIAL_DIELECTRIC) return bsdf_dielectric(p.coat.x, alpha);
-    if (p.kind.x == MATERIAL_THIN_DIELECTRIC) return bsdf_thin_dielectric(p.coat.x);
-    if (p.kind.x == MATERIAL_COATED_DIFFUSE) return bsdf_coated_diffuse(coat, color0, p.kind.y);
-    if (p.kind.x == MATERIAL_COATED_CONDUCTOR) return bsdf_coated_conductor(coat, color0, color1, base, p.kind.y);
-    return bsdf_interface();
+    MaterialRecord m;
+    m.data = uvec4(p.kind.x, p.kind.y, NONE, NONE);
+    m.textures = uvec4(NONE, NONE, NONE, NONE);
+    m.textures2 = uvec4(NONE, NONE, NONE, NONE);
+    m.color0 = vec4(p.color0.x, p.color0.y, p.color0.z, 1.0f);
+    m.color1 = p.color1;
+    m.color2 = p.albedo;
+    m.floats = vec4(p.alpha.x, p.alpha.y, p.coat.x, p.coat.z);
+    m.floats2 = vec4(p.coat.y, p.alpha.z, p.alpha.w, 0.0f);
+    m.extra = uvec4(p.kind.z, p.kind.w, NONE, NONE);
+    return bsdf_of_record(m);
 }
 
 KERNEL(bsdf_probe) {

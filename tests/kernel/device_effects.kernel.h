@@ -9,7 +9,7 @@ BUFFER_RW(0, float, results)
 
 KERNEL(device_effects) {
     float x = float(index);
-    if (HAS(EFFECT_COAT)) {
+    if (HAS(EFFECT_LAYERED_COAT)) {
         for (uint i = 0u; i < 8u; ++i) x = exp_of(sin_of(x) + log_of(x + 1.0f));
     }
     results[index] = x;

@@ -245,7 +245,7 @@ TEST_F(ShaderCacheTest, DamagedEntryIsMadeAgain) {
 TEST_F(ShaderCacheTest, EffectsOutsideTheMaskVanish) {
     run();
     const size_t without = spirv_bytes_;
-    run(kernel::EFFECT_COAT);
+    run(kernel::EFFECT_LAYERED_COAT);
     EXPECT_GT(spirv_bytes_, 2 * without) << "the effect's code is in the kernel that did not ask for it";
     EXPECT_EQ(entries().size(), 2u);
 }

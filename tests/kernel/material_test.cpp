@@ -51,11 +51,11 @@ void expect_near(glm::vec3 got, glm::dvec3 want, double tolerance) {
 // Every kind of material with known parameters.
 std::vector<kernel::MaterialRecord> all_materials() {
     TextureScene scene;
-    for (uint32_t kind = kernel::MATERIAL_INTERFACE; kind <= kernel::MATERIAL_COATED_CONDUCTOR; ++kind)
+    for (uint32_t kind = kernel::MATERIAL_INTERFACE; kind <= kernel::MATERIAL_COATEDCONDUCTOR; ++kind)
         for (uint32_t flags :
              {0u, kernel::MATERIAL_REMAP | kernel::MATERIAL_REMAP_COAT | kernel::MATERIAL_ENERGY_COMPENSATION,
               kernel::MATERIAL_USES_REFLECTANCE}) {
-            const bool is_conductor = kind == kernel::MATERIAL_CONDUCTOR || kind == kernel::MATERIAL_COATED_CONDUCTOR;
+            const bool is_conductor = kind == kernel::MATERIAL_CONDUCTOR || kind == kernel::MATERIAL_COATEDCONDUCTOR;
             if (flags == kernel::MATERIAL_USES_REFLECTANCE && !is_conductor) continue;
             kernel::MaterialRecord& m = scene.add_material(kind, flags);
             m.color0 = {0.2f, 0.5f, 0.7f, 0.9f};
@@ -84,7 +84,7 @@ TEST(Material, ParametersArriveAsTheModelsWantThem) {
             const bool remap = (m.data.y & kernel::MATERIAL_REMAP) != 0;
             const glm::vec2 alpha = remap ? glm::vec2(0.5f, 0.6f) : glm::vec2(0.25f, 0.36f);
             const glm::vec2 coat = remap ? glm::vec2(0.4f, 0.7f) : glm::vec2(0.16f, 0.49f);
-            const bool on_metal = m.data.x == kernel::MATERIAL_COATED_CONDUCTOR;
+            const bool on_metal = m.data.x == kernel::MATERIAL_COATEDCONDUCTOR;
             const bool is_conductor = m.data.x == kernel::MATERIAL_CONDUCTOR || on_metal;
             glm::dvec3 color0(m.color0), color1(m.color1);
             if (m.data.y & kernel::MATERIAL_USES_REFLECTANCE) {
@@ -93,14 +93,14 @@ TEST(Material, ParametersArriveAsTheModelsWantThem) {
                 color0 = glm::dvec3(1);
             }
             if (on_metal) color0 /= 1.5, color1 /= 1.5;
-            if (m.data.x == kernel::MATERIAL_DIFFUSE_TRANSMISSION) color0 *= 0.9f, color1 *= 0.9f;
+            if (m.data.x == kernel::MATERIAL_DIFFUSETRANSMISSION) color0 *= 0.9f, color1 *= 0.9f;
             const bool has_color = is_conductor || m.data.x == kernel::MATERIAL_DIFFUSE ||
-                                   m.data.x == kernel::MATERIAL_DIFFUSE_TRANSMISSION ||
-                                   m.data.x == kernel::MATERIAL_COATED_DIFFUSE;
+                                   m.data.x == kernel::MATERIAL_DIFFUSETRANSMISSION ||
+                                   m.data.x == kernel::MATERIAL_COATEDDIFFUSE;
             if (has_color) expect_near(xyz(a.color0), color0, 1e-6);
-            if (is_conductor || m.data.x == kernel::MATERIAL_DIFFUSE_TRANSMISSION)
+            if (is_conductor || m.data.x == kernel::MATERIAL_DIFFUSETRANSMISSION)
                 expect_near(xyz(a.color1), color1, 1e-6);
-            const bool is_coat = on_metal || m.data.x == kernel::MATERIAL_COATED_DIFFUSE;
+            const bool is_coat = on_metal || m.data.x == kernel::MATERIAL_COATEDDIFFUSE;
             if (is_coat) {
                 expect_near(xyz(a.albedo), glm::dvec3(m.color2), 0);
                 EXPECT_EQ(a.coat.x, 1.5f);

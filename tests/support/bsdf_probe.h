@@ -48,10 +48,11 @@ inline vec3 direction(double cos_theta, double phi) {
 // A backend's device with the probe compiled, kept for all tests of a program: Vulkan compiles for seconds.
 class BsdfProber {
  public:
-    static BsdfProber& on(const std::string& backend) {
+    static BsdfProber& on(const std::string& backend, const std::string& file = "kernel/bsdf_probe.kernel.h",
+                          kernel::EffectSet effects = kernel::kAllEffects) {
         static std::map<std::string, std::unique_ptr<BsdfProber>> probers;
-        auto& prober = probers[backend];
-        if (!prober) prober.reset(new BsdfProber(backend));
+        auto& prober = probers[backend + " " + file];
+        if (!prober) prober.reset(new BsdfProber(backend, file, effects));
         return *prober;
     }
 
@@ -93,9 +94,8 @@ class BsdfProber {
     }
 
  private:
-    explicit BsdfProber(const std::string& backend)
-        : device_(create_device(backend)),
-          kernel_(device_->compile("kernel/bsdf_probe.kernel.h", kernel::kAllEffects)) {}
+    BsdfProber(const std::string& backend, const std::string& file, kernel::EffectSet effects)
+        : device_(create_device(backend)), kernel_(device_->compile(file, effects)) {}
 
     std::unique_ptr<Device> device_;
     KernelHandle kernel_;
@@ -111,7 +111,7 @@ inline BsdfProbe diffuse(float r) {
 }
 inline BsdfProbe diffuse_transmission(float r, float t) {
     BsdfProbe p;
-    p.kind.x = kernel::MATERIAL_DIFFUSE_TRANSMISSION;
+    p.kind.x = kernel::MATERIAL_DIFFUSETRANSMISSION;
     p.color0 = vec4(r);
     p.color1 = vec4(t);
     return p;
@@ -133,13 +133,13 @@ inline BsdfProbe dielectric(float eta, float alpha_x, float alpha_y) {
 }
 inline BsdfProbe thin_dielectric(float eta) {
     BsdfProbe p;
-    p.kind.x = kernel::MATERIAL_THIN_DIELECTRIC;
+    p.kind.x = kernel::MATERIAL_THINDIELECTRIC;
     p.coat.x = eta;
     return p;
 }
 inline BsdfProbe coated_diffuse(float r, float eta, float alpha, float thickness, float albedo, float g) {
     BsdfProbe p;
-    p.kind.x = kernel::MATERIAL_COATED_DIFFUSE;
+    p.kind.x = kernel::MATERIAL_COATEDDIFFUSE;
     p.color0 = vec4(r);
     p.alpha = vec4(alpha, alpha, 0, 0);
     p.coat = vec4(eta, thickness, g, 0);
@@ -150,10 +150,10 @@ inline BsdfProbe coated_diffuse(float r, float eta, float alpha, float thickness
 inline BsdfProbe coated_conductor(float n, float k, float base_alpha, float eta, float alpha, float thickness,
                                   float albedo, float g) {
     BsdfProbe p = coated_diffuse(0, eta, alpha, thickness, albedo, g);
-    p.kind.x = kernel::MATERIAL_COATED_CONDUCTOR;
+    p.kind.x = kernel::MATERIAL_COATEDCONDUCTOR;
     p.color0 = vec4(n);
     p.color1 = vec4(k);
-    p.alpha = vec4(alpha, alpha, base_alpha, base_alpha);
+    p.alpha = vec4(base_alpha, base_alpha, alpha, alpha);
     return p;
 }
 

@@ -194,7 +194,7 @@ NamedMaterial "both"
     EXPECT_EQ(plastic.floats2.x, 0.01f);
     EXPECT_EQ(plastic.extra.x, 10u);
     EXPECT_EQ(text.scene().effects.mask(),
-              EFFECT_MIX | EFFECT_CONDUCTOR | EFFECT_ROUGH | EFFECT_ANISOTROPIC | EFFECT_COAT | EFFECT_DIELECTRIC);
+              EFFECT_MATERIAL_MIX | EFFECT_CONDUCTOR | EFFECT_ROUGH | EFFECT_ANISOTROPIC | EFFECT_LAYERED_COAT | EFFECT_DIELECTRIC);
 }
 
 // Photons are kept by it (visible_point.h): no less than what any place of the material has.

@@ -10,7 +10,13 @@ CONST uint LOBE_GLOSSY = 8u;
 CONST uint LOBE_SPECULAR = 16u;
 CONST uint LOBE_BOTH_SIDES = 3u;  // reflection and transmission: an unrestricted choice
 
-// A material at a point: every parameter is resolved. Make one with the functions in bsdf.h, which bound the parameters.
+// What an eye path of photon mapping does at a surface.
+CONST uint VISIBLE_FOLLOW = 0u;  // sample a direction and go on: (nearly) specular
+CONST uint VISIBLE_GATHER = 1u;  // estimate the reflected radiance from photons here
+CONST uint VISIBLE_SPLIT = 2u;   // a smooth coat over something rough: one or the other, by chance
+
+// A material at a point: every parameter is resolved. bsdf_of_record makes one; which member means what is the material's own
+// business. Those of the tree use them so:
 struct Bsdf {
     uint kind;        // MATERIAL_*, never MATERIAL_MIX
     uint flags;       // MATERIAL_ENERGY_COMPENSATION, MATERIAL_EXACT_COAT
@@ -25,8 +31,48 @@ struct Bsdf {
     uint max_depth;   // coats: most events of a random walk
     uint samples;     // coats: random walks per evaluation
     uint walk;        // coats: which walks; 0 unless the same two directions are asked about again and again
-    float inner;      // smooth clear coats over diffuse bases: inner reflectance (bsdf_clear_coat.h); else negative
+    float inner;  // smooth clear coats over diffuse bases: inner reflectance (clear_coat.functions.h); else negative
 };
+
+// Nothing that scatters.
+FN Bsdf no_bsdf() {
+    Bsdf b;
+    b.kind = MATERIAL_INTERFACE;
+    b.flags = 0u;
+    b.color0 = vec3(0.0f);
+    b.color1 = vec3(0.0f);
+    b.albedo = vec3(0.0f);
+    b.alpha = vec2(0.0f, 0.0f);
+    b.alpha_base = vec2(0.0f, 0.0f);
+    b.eta = 1.0f;
+    b.thickness = 0.0f;
+    b.g = 0.0f;
+    b.max_depth = 0u;
+    b.samples = 1u;
+    b.walk = 0u;
+    b.inner = -1.0f;
+    return b;
+}
+
+// ---- Parameters from a record ----------------------------------------------------------------------------------------
+// These bound every parameter to where the models' functions are finite: scenes may ask for anything.
+
+FN vec3 bounded_share(vec3 c) { return vec3(clamp(c.x, 0.0f, 1.0f), clamp(c.y, 0.0f, 1.0f), clamp(c.z, 0.0f, 1.0f)); }
+FN vec3 bounded_index(vec3 c) { return vec3(clamp(c.x, 0.0f, 1e4f), clamp(c.y, 0.0f, 1e4f), clamp(c.z, 0.0f, 1e4f)); }
+// A relative index; pbrt reads 0 as 1.
+FN float bounded_eta(float eta) { return eta > 0.0f ? clamp(eta, 0.01f, 100.0f) : 1.0f; }
+
+FN vec2 roughness_alpha(float u, float v, bool remap) { return remap ? vec2(safe_sqrt(u), safe_sqrt(v)) : vec2(u, v); }
+// The roughness of a record, remapped where it asks for that, and as the GGX functions need it.
+FN vec2 record_roughness(IN(MaterialRecord) m) {
+    return roughness_alpha(m.floats.x, m.floats.y, (m.data.y & MATERIAL_REMAP) != 0u);
+}
+FN vec2 record_alpha(IN(MaterialRecord) m) {
+    vec2 alpha = record_roughness(m);
+    return ggx_alpha(alpha.x, alpha.y);
+}
+
+// ---- Samples ---------------------------------------------------------------------------------------------------------
 
 struct BsdfSample {
     vec3 wi;

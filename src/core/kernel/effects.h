@@ -3,7 +3,9 @@
 #ifndef LAMPYRIS_KERNEL_EFFECTS
 #define LAMPYRIS_KERNEL_EFFECTS
 
-// E(constant, bit, name, what it costs)
+#include "materials/list.h"
+
+// E(constant, bit, name, what it costs). Those of materials are declared in their folders, and have bits from 32 on.
 #define LAMPYRIS_EFFECTS(E)                                                                                           \
     E(EFFECT_SMOOTH_NORMALS, 0, "smooth-normals", "interpolates vertex normals at every hit")                         \
     E(EFFECT_QUADRICS, 1, "quadrics", "intersects spheres, disks and cylinders exactly")                              \
@@ -13,14 +15,8 @@
     E(EFFECT_TEXTURES, 5, "textures", "evaluates texture programs at every hit")                                      \
     E(EFFECT_IMAGES, 6, "image-textures", "four texel reads per image look-up")                                       \
     E(EFFECT_BUMP, 7, "bump-or-normal-map", "two more texture look-ups per hit for a bump map, one for a normal map") \
-    E(EFFECT_CONDUCTOR, 8, "conductor", "complex Fresnel terms")                                                      \
-    E(EFFECT_DIELECTRIC, 9, "dielectric", "reflection and refraction, paths through glass are longer")                \
+    LAMPYRIS_MATERIAL_EFFECTS(E)                                                                                      \
     E(EFFECT_ROUGH, 10, "rough-specular", "microfacet distributions (GGX, visible normals)")                          \
-    E(EFFECT_THIN_DIELECTRIC, 11, "thin-dielectric", "a pane's reflection and transmission")                          \
-    E(EFFECT_DIFFUSE_TRANSMISSION, 12, "diffuse-transmission", "a second diffuse lobe")                               \
-    E(EFFECT_COAT, 13, "layered-coat", "a random walk between layers for each evaluation and sample")                 \
-    E(EFFECT_MIX, 14, "material-mix", "picks one of two materials at every hit")                                      \
-    E(EFFECT_INTERFACE, 15, "interface", "surfaces that only bound a medium: another ray per crossing")               \
     E(EFFECT_AREA_LIGHTS, 16, "area-lights", "samples emissive shapes, and weights emission found by chance (MIS)")   \
     E(EFFECT_QUADRIC_LIGHTS, 17, "quadric-area-lights", "samples emissive spheres, disks, cylinders and patches")     \
     E(EFFECT_LIGHT_TEXTURES, 18, "textured-area-lights", "a texture look-up per emission")                            \

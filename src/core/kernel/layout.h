@@ -6,6 +6,8 @@
 #ifndef LAMPYRIS_KERNEL_LAYOUT
 #define LAMPYRIS_KERNEL_LAYOUT
 
+#include "materials/list.h"
+
 CONST uint NONE = 0xffffffffu;
 
 // ---- Geometry --------------------------------------------------------------------------------------------------------
@@ -73,25 +75,15 @@ struct BvhNode {
 
 // ---- Materials -------------------------------------------------------------------------------------------------------
 
-CONST uint MATERIAL_INTERFACE = 0u;
-CONST uint MATERIAL_DIFFUSE = 1u;
-CONST uint MATERIAL_CONDUCTOR = 2u;
-CONST uint MATERIAL_DIELECTRIC = 3u;
-CONST uint MATERIAL_THIN_DIELECTRIC = 4u;
-CONST uint MATERIAL_DIFFUSE_TRANSMISSION = 5u;
-CONST uint MATERIAL_COATED_DIFFUSE = 6u;
-CONST uint MATERIAL_COATED_CONDUCTOR = 7u;
-CONST uint MATERIAL_MIX = 8u;
-
 CONST uint MATERIAL_REMAP = 1u;  // roughness is remapped (alpha = sqrt(roughness)) in the kernel, after textures
 CONST uint MATERIAL_USES_REFLECTANCE = 2u;  // conductor: color0 is `reflectance`, from which eta = 1 and k follow
 CONST uint MATERIAL_REMAP_COAT = 4u;        // as MATERIAL_REMAP, for the interface's roughness
 CONST uint MATERIAL_ENERGY_COMPENSATION = 8u;
-CONST uint MATERIAL_EXACT_COAT = 16u;  // coats: unbiased weights where pbrt's are not (bsdf_layered.h)
+CONST uint MATERIAL_EXACT_COAT = 16u;  // coats: unbiased weights where pbrt's are not (layered.functions.h)
 
 // A slot's value is its constant, or where its texture is not NONE, the texture.
 struct MaterialRecord {
-    uvec4 data;       // kind, flags, bump (displacement) texture or NONE, normal-map image or NONE
+    uvec4 data;       // kind (MATERIAL_NAME), flags, bump (displacement) texture or NONE, normal-map image or NONE
     uvec4 textures;   // textures of color0, color1, color2, of floats.x
     uvec4 textures2;  // textures of floats.y, floats2.x, floats2.y, floats2.z
     vec4 color0;      // reflectance; conductor: eta or reflectance; w: scale (diffusetransmission)

@@ -4,8 +4,6 @@
 
 // Step of a bump map's finite differences, in units of u and v (pbrt's, where it knows no footprint).
 CONST float BUMP_STEP = 5e-4f;
-// The deepest nesting of mix materials; the host refuses more.
-CONST uint MIX_DEPTH = 64u;
 
 FN TextureContext surface_texture_context(IN(Surface) s) {
     TextureContext c;
@@ -22,30 +20,8 @@ FN float surface_alpha(uint geometry, IN(TextureContext) c) {
     return texture_float(program, c);
 }
 
-// In [0, 1): a hash of where a surface is seen from where, so that the choice needs no random number and is the same for all
-// who ask (pbrt, 4th edition, section 10.5.1); of the mix, too, so that nested mixes choose independently.
-FN float mix_choice(vec3 position, vec3 wo, uint material) {
-    uint h = hash32(material);
-    h = hash_combine(h, floatBitsToUint(position.x));
-    h = hash_combine(h, floatBitsToUint(position.y));
-    h = hash_combine(h, floatBitsToUint(position.z));
-    h = hash_combine(h, floatBitsToUint(wo.x));
-    h = hash_combine(h, floatBitsToUint(wo.y));
-    h = hash_combine(h, floatBitsToUint(wo.z));
-    return unit_float(h);
-}
-
-// Replaces a mix in s.material by the material that it shows here. wo: world space.
-RARE_FN void material_resolve(INOUT(Surface) s, vec3 wo) {
-    for (uint i = 0u; i < MIX_DEPTH; ++i) {
-        if (materials[s.material].data.x != MATERIAL_MIX) return;
-        uvec4 extra = materials[s.material].extra;
-        float amount =
-            extra.z == NONE ? materials[s.material].floats.x : texture_float(extra.z, surface_texture_context(s));
-        s.material = mix_choice(s.position, wo, s.material) < amount ? extra.y : extra.x;
-    }
-    REPORT_UNFINISHED();
-}
+// A mix is no scattering function, but stands for one of its materials: nothing is asked of it but which.
+#include "materials/mix/mix.material.h"
 
 // The texture of a slot, in the order of the record: color0..2, roughness u and v, thickness, the coat's roughness u and v.
 CONST uint MATERIAL_SLOTS = 8u;
@@ -134,14 +110,12 @@ FN void material_textures(INOUT(MaterialRecord) m, INOUT(Surface) s) {
     if (bumped) apply_bump(s, displaced);
 }
 
-FN vec2 roughness_alpha(float u, float v, bool remap) { return remap ? vec2(safe_sqrt(u), safe_sqrt(v)) : vec2(u, v); }
-
 // The Bsdf at s, and the frame in which it is meant: z is the shading normal. wo, the direction that light leaves in, and the
 // frame's axes are in world space. s.ns and s.dpdu are those of the bump or normal map afterwards, s.material is never a mix.
 FN Bsdf material_bsdf(INOUT(Surface) s, vec3 wo, OUT(Frame) frame) {
-    if (HAS(EFFECT_MIX) && RARELY(materials[s.material].data.x == MATERIAL_MIX)) {
+    if (HAS(EFFECT_MATERIAL_MIX) && RARELY(materials[s.material].data.x == MATERIAL_MIX)) {
         Surface mixed = s;
-        material_resolve(mixed, wo);
+        mix_resolve(mixed, wo);
         s.material = mixed.material;
     }
     MaterialRecord m = materials[s.material];
@@ -149,39 +123,7 @@ FN Bsdf material_bsdf(INOUT(Surface) s, vec3 wo, OUT(Frame) frame) {
         material_textures(m, s);
     if (HAS(EFFECT_BUMP) && m.data.w != NONE) apply_normal_map(s, m.data.w);
 
-    uint kind = m.data.x;
-    uint flags = m.data.y;
-    vec3 color0 = vec3(m.color0.x, m.color0.y, m.color0.z);
-    vec3 color1 = vec3(m.color1.x, m.color1.y, m.color1.z);
-    vec2 alpha = roughness_alpha(m.floats.x, m.floats.y, (flags & MATERIAL_REMAP) != 0u);
-    if ((flags & MATERIAL_USES_REFLECTANCE) != 0u) {
-        color1 = conductor_k_of_reflectance(color0);
-        color0 = vec3(1.0f);
-    }
-    Bsdf b;
-    if (kind == MATERIAL_DIFFUSE) {
-        b = bsdf_diffuse(color0);
-    } else if (HAS(EFFECT_CONDUCTOR) && kind == MATERIAL_CONDUCTOR) {
-        b = bsdf_conductor(color0, color1, alpha, flags & MATERIAL_ENERGY_COMPENSATION);
-    } else if (HAS(EFFECT_DIELECTRIC) && kind == MATERIAL_DIELECTRIC) {
-        b = bsdf_dielectric(m.floats.z, alpha);
-    } else if (HAS(EFFECT_THIN_DIELECTRIC) && kind == MATERIAL_THIN_DIELECTRIC) {
-        b = bsdf_thin_dielectric(m.floats.z);
-    } else if (HAS(EFFECT_DIFFUSE_TRANSMISSION) && kind == MATERIAL_DIFFUSE_TRANSMISSION) {
-        b = bsdf_diffuse_transmission(m.color0.w * color0, m.color0.w * color1);
-    } else if (HAS(EFFECT_COAT) && (kind == MATERIAL_COATED_DIFFUSE || kind == MATERIAL_COATED_CONDUCTOR)) {
-        bool on_metal = kind == MATERIAL_COATED_CONDUCTOR;
-        vec2 coat_alpha = alpha;
-        if (on_metal) coat_alpha = roughness_alpha(m.floats2.y, m.floats2.z, (flags & MATERIAL_REMAP_COAT) != 0u);
-        Bsdf coat = bsdf_coat(m.floats.z, coat_alpha, m.floats2.x, vec3(m.color2.x, m.color2.y, m.color2.z), m.floats.w,
-                              m.extra.x, m.extra.y);
-        if (on_metal)
-            b = bsdf_coated_conductor(coat, color0, color1, alpha, flags);
-        else
-            b = bsdf_coated_diffuse(coat, color0, flags);
-    } else {
-        b = bsdf_interface();
-    }
+    Bsdf b = bsdf_of_record(m);
     // Only anisotropic roughness asks where the tangent points.
     bool oriented = CALLED_FOR(EFFECT_ANISOTROPIC) && (b.alpha.x != b.alpha.y || b.alpha_base.x != b.alpha_base.y);
     if (oriented)

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 
 namespace lampyris {
@@ -21,40 +20,8 @@ kernel::MaterialRecord blank_material() {
     record.textures2 = kernel::uvec4(kernel::NONE);
     record.extra = {0u, 0u, kernel::NONE, kernel::NONE};
     record.color0 = kernel::vec4(0.5f, 0.5f, 0.5f, 1.0f);
+    record.floats2.w = 1e30f;  // eye paths gather on it, unless the material knows better
     return record;
-}
-
-// What eye paths gather on, whatever `glossy` is; textured roughness may be that.
-constexpr float kRoughestDiffuse = 1e30f;
-
-// MaterialRecord::floats2.w. Of a mix its materials are built before it.
-float roughest_lobe(const kernel::MaterialRecord& m, const std::vector<kernel::MaterialRecord>& materials) {
-    const auto of = [](float u, float v, uint32_t texture_u, uint32_t texture_v, bool remap) {
-        if (texture_u != kernel::NONE || texture_v != kernel::NONE) return kRoughestDiffuse;
-        const float roughest = std::max({u, v, 0.0f});
-        return remap ? std::sqrt(roughest) : roughest;
-    };
-    const auto base = [&] {
-        return of(m.floats.x, m.floats.y, m.textures.w, m.textures2.x, m.data.y & kernel::MATERIAL_REMAP);
-    };
-    switch (m.data.x) {
-        case kernel::MATERIAL_DIFFUSE:
-        case kernel::MATERIAL_DIFFUSE_TRANSMISSION:
-        case kernel::MATERIAL_COATED_DIFFUSE: return kRoughestDiffuse;
-        case kernel::MATERIAL_CONDUCTOR:
-        case kernel::MATERIAL_DIELECTRIC: return base();
-        case kernel::MATERIAL_COATED_CONDUCTOR:
-            return std::max(base(), of(m.floats2.y, m.floats2.z, m.textures2.z, m.textures2.w,
-                                       m.data.y & kernel::MATERIAL_REMAP_COAT));
-        case kernel::MATERIAL_MIX: {
-            const bool constant = m.extra.z == kernel::NONE;
-            float roughest = 0.0f;
-            if (!constant || m.floats.x < 1.0f) roughest = materials[m.extra.x].floats2.w;
-            if (!constant || m.floats.x > 0.0f) roughest = std::max(roughest, materials[m.extra.y].floats2.w);
-            return roughest;
-        }
-        default: return 0.0f;
-    }
 }
 
 bool refuse_unsupported(BuildContext& context, const MaterialDescription& material) {
@@ -123,7 +90,6 @@ uint32_t BuildContext::material(uint32_t description_index, const std::vector<ui
                               hint);
         }
     }
-    if (!diagnostics.has_errors()) record.floats2.w = roughest_lobe(record, scene.materials);
     const uint32_t index = uint32_t(scene.materials.size());
     scene.materials.push_back(record);
     built_materials.emplace(description_index, index);

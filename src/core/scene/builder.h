@@ -1,5 +1,6 @@
 // What the parts of the scene's builder share: the registries of scene plugins, and the context that a plugin's factory
-// gets. A plugin is one file in shapes/, materials/, textures/, media/, lights/, cameras/ or filters/ whose last line registers it.
+// gets. A plugin is one file in shapes/, textures/, media/, lights/, cameras/ or filters/ whose last line registers it; a material is
+// a folder in src/materials/.
 #pragma once
 
 #include "core/parameters.h"
@@ -193,7 +194,7 @@ Registry<FilterFactory>& filter_registry();
 struct RegisterShape {
     RegisterShape(const char* name, const char* summary, ParameterSpecs specs, ShapeFactory factory);
 };
-// Materials get "displacement" and "normalmap".
+// Materials that bend the shading normal add "displacement" and "normalmap" (materials/shared/host.h).
 struct RegisterMaterial {
     RegisterMaterial(const char* name, const char* summary, ParameterSpecs specs, MaterialFactory factory);
 };

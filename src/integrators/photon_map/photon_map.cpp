@@ -27,7 +27,7 @@ constexpr double kExpectedPhotons = 50.0, kExpectedOfNearest = 4.0;
 
 // What has surfaces that are followed, so that there may be caustics.
 constexpr uint64_t kSpecularEffects =
-    kernel::EFFECT_CONDUCTOR | kernel::EFFECT_DIELECTRIC | kernel::EFFECT_THIN_DIELECTRIC | kernel::EFFECT_COAT;
+    kernel::EFFECT_CONDUCTOR | kernel::EFFECT_DIELECTRIC | kernel::EFFECT_THIN_DIELECTRIC | kernel::EFFECT_LAYERED_COAT;
 
 // Points where photons are looked up, one a pixel: hit points of eye paths, or ends of gather rays.
 struct Lookups {

@@ -108,7 +108,7 @@ FN void follow_eye_path(IN(Sampler) numbers, bool from_camera, uint branch_asked
         }
         if (path.walk.depth >= path.walk.maxdepth) break;
         uint dimension = eye_vertex_dimension(path.walk);
-        uint action = visible_action(v.bsdf, params[0].glossy);
+        uint action = bsdf_visible_action(v.bsdf, params[0].glossy);
         uint lobes = EYE_LOBES_ALL;
         if (action == VISIBLE_SPLIT && branch == EYE_BRANCH_CHANCE) {
             action = sample_1d_at(numbers, dimension + EYE_BRANCH) < 0.5f ? VISIBLE_GATHER : VISIBLE_FOLLOW;

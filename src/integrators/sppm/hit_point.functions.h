@@ -13,7 +13,7 @@ struct HitPoint {
 
 FN HitPoint no_hit_point() {
     HitPoint p;
-    p.vertex.bsdf = bsdf_interface();
+    p.vertex.bsdf = no_bsdf();
     p.vertex.frame = frame_from_z(vec3(0.0f, 0.0f, 1.0f));
     p.vertex.wo = vec3(0.0f);
     p.ng = vec3(0.0f);

@@ -23,7 +23,7 @@ class PhotonMapping {
           params_(params),
           fixed_(eye_samples > 0),
           // A path that is followed once takes both ways at a coat.
-          branches_(fixed_ && (session.scene.effects.mask() & kernel::EFFECT_COAT) ? 2 : 1),
+          branches_(fixed_ && (session.scene.effects.mask() & kernel::EFFECT_LAYERED_COAT) ? 2 : 1),
           points_(std::max(eye_samples, 1u) * branches_),
           pixels_(session.film.pixel_count()),
           eye_slices_(session.device, session.film) {

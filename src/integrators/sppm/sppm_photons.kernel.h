@@ -57,7 +57,7 @@ KERNEL(sppm_photons) {
         }
         if (walk_crosses_or_passes(walk, s, fate)) continue;
         Vertex v = walk_vertex(walk, s);
-        uint action = visible_action(v.bsdf, params[0].glossy);
+        uint action = bsdf_visible_action(v.bsdf, params[0].glossy);
         // What is reflected here is no caustic, but for the smooth coat over it: that is known once a lobe is chosen.
         bool ends = pass.keep == SPPM_KEEP_CAUSTIC && action == VISIBLE_GATHER;
         if (walk.depth >= walk.maxdepth || ends) break;

@@ -1,4 +1,4 @@
-// What several materials share.
+// What the host's parts of several materials share.
 #pragma once
 
 #include "core/scene/builder.h"
@@ -17,6 +17,16 @@ struct Roughness {
 };
 Roughness read_roughness(MaterialContext& context, const std::string& prefix);
 ParameterSpec remap_spec();
+// The same, into the record's slots for the roughness (floats.x and .y), remapped if "remaproughness" says so.
+Roughness read_base_roughness(MaterialContext& context, const std::string& prefix);
+
+// ---- How rough it gets -----------------------------------------------------------------------------------------------
+// MaterialRecord::floats2.w: photons are kept on a material if an eye path may gather on it, which is where this is no less
+// than the integrator's `glossy`. Without a word of the material it is kRoughestDiffuse, as if it were diffuse.
+constexpr float kRoughestDiffuse = 1e30f;
+constexpr float kNeverGathers = 0.0f;  // delta lobes alone
+// The GGX alpha of a roughness; textured, it may be anything.
+float roughest_alpha(const Roughness& roughness, bool remapped);
 
 // An index of refraction that does not depend on the wavelength. A spectrum that varies is dispersion, which is unsupported;
 // skipped, its value at the sodium d line (587.6 nm) holds.
@@ -26,6 +36,10 @@ float read_eta(MaterialContext& context, std::string_view name);
 // eta and k, or reflectance, into color0 and color1, with flags and textures.
 void add_conductor(ParameterSpecs& specs, const std::string& prefix);
 void read_conductor(MaterialContext& context, const std::string& prefix);
+
+// The coat of "coateddiffuse" and "coatedconductor"; `eta` is the name of its index.
+ParameterSpecs with_coat(ParameterSpecs specs);
+void read_coat(MaterialContext& context, const std::string& eta);
 
 void set_color0(MaterialContext& context, const ColorSlot& slot);
 void set_color1(MaterialContext& context, const ColorSlot& slot);

@@ -1,5 +1,5 @@
 // Material "interface" (also "" and "none"): a surface that rays pass, the boundary of a medium.
-#include "core/scene/materials/common.h"
+#include "materials/shared/host.h"
 
 namespace lampyris {
 
@@ -7,6 +7,7 @@ namespace {
 
 void build(MaterialContext& context) {
     context.record.data.x = kernel::MATERIAL_INTERFACE;
+    context.record.floats2.w = kNeverGathers;
     context.ask(kernel::EFFECT_INTERFACE);
 }
 

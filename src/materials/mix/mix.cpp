@@ -1,5 +1,5 @@
 // Material "mix": each point shows one of two materials, by chance.
-#include "core/scene/materials/common.h"
+#include "materials/shared/host.h"
 
 #include <fmt/format.h>
 
@@ -9,13 +9,22 @@ namespace lampyris {
 
 namespace {
 
-// Less than MIX_DEPTH (core/kernel/material.h), which is how many kernels look at.
+// Less than MIX_DEPTH (mix.material.h), which is how many kernels look at.
 constexpr uint32_t kMostMixes = 63;
 
 // How many mixes a look-up passes from a material on.
 uint32_t mix_depth(const BuildContext& build, uint32_t material) {
     const auto found = build.mix_depths.find(material);
     return found == build.mix_depths.end() ? 0u : found->second;
+}
+
+// How rough the roughest of its materials gets, of those that it shows at all.
+float roughest_of_both(const kernel::MaterialRecord& mix, const std::vector<kernel::MaterialRecord>& materials) {
+    const bool constant = mix.extra.z == kNone;
+    float roughest = kNeverGathers;
+    if (!constant || mix.floats.x < 1.0f) roughest = materials[mix.extra.x].floats2.w;
+    if (!constant || mix.floats.x > 0.0f) roughest = std::max(roughest, materials[mix.extra.y].floats2.w);
+    return roughest;
 }
 
 void refuse_depth(MaterialContext& context) {
@@ -27,7 +36,7 @@ void build(MaterialContext& context) {
     kernel::MaterialRecord& record = context.record;
     BuildContext& build = context.build;
     record.data.x = kernel::MATERIAL_MIX;
-    context.ask(kernel::EFFECT_MIX);
+    context.ask(kernel::EFFECT_MATERIAL_MIX);
     const FloatSlot amount = read_float(build, context.reader, "amount");
     record.floats.x = amount.value;
     record.extra.z = amount.texture;
@@ -73,6 +82,7 @@ void build(MaterialContext& context) {
         refuse_depth(context);
         depth = 0;
     }
+    if (!build.diagnostics.has_errors()) record.floats2.w = roughest_of_both(record, build.scene.materials);
     // Materials are appended when they are finished, so this one's index is the next.
     build.mix_depths[uint32_t(build.scene.materials.size())] = depth;
 }

@@ -1,12 +1,13 @@
 // Material "diffusetransmission": paper, leaves.
-#include "core/scene/materials/common.h"
+#include "materials/shared/host.h"
 
 namespace lampyris {
 
 namespace {
 
 void build(MaterialContext& context) {
-    context.record.data.x = kernel::MATERIAL_DIFFUSE_TRANSMISSION;
+    context.record.data.x = kernel::MATERIAL_DIFFUSETRANSMISSION;
+    context.record.floats2.w = kRoughestDiffuse;
     context.ask(kernel::EFFECT_DIFFUSE_TRANSMISSION);
     set_color0(context,
                read_color(context.build, context.reader, "reflectance", SpectrumUse::kAlbedo, glm::vec3(0.25f)));

@@ -1,5 +1,5 @@
 // Material "conductor": a metal, by complex Fresnel terms and GGX microfacets.
-#include "core/scene/materials/common.h"
+#include "materials/shared/host.h"
 
 namespace lampyris {
 
@@ -9,11 +9,8 @@ void build(MaterialContext& context) {
     kernel::MaterialRecord& record = context.record;
     record.data.x = kernel::MATERIAL_CONDUCTOR;
     read_conductor(context, "");
-    const Roughness roughness = read_roughness(context, "");
-    record.floats.x = roughness.u.value, record.floats.y = roughness.v.value;
-    record.textures.w = roughness.u.texture, record.textures2.x = roughness.v.texture;
-    if (context.reader.get_bool("remaproughness")) record.data.y |= kernel::MATERIAL_REMAP;
-    if (!roughness.smooth()) context.ask(kernel::EFFECT_ROUGH);
+    const Roughness roughness = read_base_roughness(context, "");
+    record.floats2.w = roughest_alpha(roughness, record.data.y & kernel::MATERIAL_REMAP);
     read_surface_detail(context);
 }
 

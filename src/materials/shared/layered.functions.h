@@ -5,21 +5,25 @@
 //
 // Both sides show the coat (pbrt's twoSided): everything is turned so that wo.z > 0. The coat's interface is at height
 // `thickness`, the base at 0; the medium's extinction is 1. The base transmits nothing.
-#ifndef LAMPYRIS_KERNEL_BSDF_LAYERED
-#define LAMPYRIS_KERNEL_BSDF_LAYERED
+#ifndef LAMPYRIS_MATERIALS_LAYERED
+#define LAMPYRIS_MATERIALS_LAYERED
+
+#include "materials/conductor/conductor.material.h"
+#include "materials/dielectric/dielectric.material.h"
+#include "materials/diffuse/diffuse.material.h"
 
 // ---- The base --------------------------------------------------------------------------------------------------------
 
-FN bool base_is_specular(IN(Bsdf) b) { return b.kind == MATERIAL_COATED_CONDUCTOR && ggx_is_smooth(b.alpha_base); }
+FN bool base_is_specular(IN(Bsdf) b) { return b.kind == MATERIAL_COATEDCONDUCTOR && ggx_is_smooth(b.alpha_base); }
 
 FN vec3 base_eval(IN(Bsdf) b, vec3 wo, vec3 wi, OUT(float) pdf) {
-    if (b.kind == MATERIAL_COATED_DIFFUSE) return diffuse_eval(b.color0, wo, wi, pdf);
-    return conductor_eval(b.color0, b.color1, b.alpha_base, b.flags, wo, wi, pdf);
+    if (b.kind == MATERIAL_COATEDDIFFUSE) return diffuse_lobe_eval(b.color0, wo, wi, pdf);
+    return conductor_lobe_eval(b.color0, b.color1, b.alpha_base, b.flags, wo, wi, pdf);
 }
 
 FN bool base_sample(IN(Bsdf) b, vec3 wo, vec2 u, INOUT(BsdfSample) s) {
-    if (b.kind == MATERIAL_COATED_DIFFUSE) return diffuse_sample(b.color0, wo, u, s);
-    return conductor_sample(b.color0, b.color1, b.alpha_base, b.flags, wo, u, s);
+    if (b.kind == MATERIAL_COATEDDIFFUSE) return diffuse_lobe_sample(b.color0, wo, u, s);
+    return conductor_lobe_sample(b.color0, b.color1, b.alpha_base, b.flags, wo, u, s);
 }
 
 // ---- Small things ----------------------------------------------------------------------------------------------------
@@ -81,7 +85,7 @@ RARE_FN bool layered_scatter(IN(Bsdf) b, vec3 wo_any, vec3 wi_any, float uc, vec
     vec3 wo = below ? -wo_any : wo_any;
     vec3 wi = below ? -wi_any : wi_any;
     if (is_grazing(wo)) return false;
-    bool coat_specular = dielectric_is_specular(b.alpha, b.eta);
+    bool coat_specular = dielectric_lobe_is_specular(b.alpha, b.eta);
     bool base_specular = base_is_specular(b);
     bool has_medium = !is_black(b.albedo);
     bool found = false;
@@ -163,7 +167,7 @@ RARE_FN bool layered_scatter(IN(Bsdf) b, vec3 wo_any, vec3 wi_any, float uc, vec
                     vec3 from = !entering ? -w : (step == 0u ? wo : wi);
                     uint lobes = sampling ? LOBE_BOTH_SIDES : (entering ? LOBE_TRANSMISSION : LOBE_REFLECTION);
                     uint flow = entering && step == 1u ? 1u - transport : transport;
-                    goes_on = dielectric_sample(b.alpha, b.eta, from, uc_event, u_event, flow, lobes, event);
+                    goes_on = dielectric_lobe_sample(b.alpha, b.eta, from, uc_event, u_event, flow, lobes, event);
                 } else {
                     vec2 u_event = rng_float2(rng);
                     if (scattered) {
@@ -217,7 +221,8 @@ RARE_FN bool layered_scatter(IN(Bsdf) b, vec3 wo_any, vec3 wi_any, float uc, vec
                     if (outside && weighing) lobes = LOBE_REFLECTION;
                     if (!outside && valuing) lobes = LOBE_TRANSMISSION;
                     float pdf;
-                    vec3 f = dielectric_eval(b.alpha, b.eta, from, to, exact ? 1u - transport : transport, lobes, pdf);
+                    vec3 f =
+                        dielectric_lobe_eval(b.alpha, b.eta, from, to, exact ? 1u - transport : transport, lobes, pdf);
                     if (outside) {
                         surface = weighing ? vec3(pdf) : f;
                     } else if (weighing) {

@@ -1,9 +1,10 @@
-#include "core/scene/materials/common.h"
+#include "materials/shared/host.h"
 
 #include <fmt/format.h>
 #include <glm/glm.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace lampyris {
 
@@ -54,6 +55,22 @@ Roughness read_roughness(MaterialContext& context, const std::string& prefix) {
     if (roughness.u.value != roughness.v.value || roughness.u.texture != roughness.v.texture)
         context.ask(kernel::EFFECT_ANISOTROPIC);
     return roughness;
+}
+
+Roughness read_base_roughness(MaterialContext& context, const std::string& prefix) {
+    kernel::MaterialRecord& record = context.record;
+    const Roughness roughness = read_roughness(context, prefix);
+    record.floats.x = roughness.u.value, record.floats.y = roughness.v.value;
+    record.textures.w = roughness.u.texture, record.textures2.x = roughness.v.texture;
+    if (context.reader.get_bool("remaproughness")) record.data.y |= kernel::MATERIAL_REMAP;
+    if (!roughness.smooth()) context.ask(kernel::EFFECT_ROUGH);
+    return roughness;
+}
+
+float roughest_alpha(const Roughness& roughness, bool remapped) {
+    if (roughness.u.texture != kNone || roughness.v.texture != kNone) return kRoughestDiffuse;
+    const float roughest = std::max({roughness.u.value, roughness.v.value, 0.0f});
+    return remapped ? std::sqrt(roughest) : roughest;
 }
 
 ParameterSpec remap_spec() {

@@ -1,16 +1,18 @@
-// Glass: reflection and refraction, specular or by GGX microfacets (Walter et al. 2007; pbrt, 4th edition, sections 9.5
-// and 9.7), and thin panes.
+// Material "dielectric": glass by reflection and refraction, specular or by GGX microfacets (Walter et al. 2007; pbrt, 4th edition,
+// sections 9.5 and 9.7).
 //
 // Both sides work alike: everything is turned so that wo.z > 0, and eta is then that of the side of -z over wo's side.
 // `lobes` restricts sampling (and its density) to LOBE_REFLECTION or LOBE_TRANSMISSION; LOBE_BOTH_SIDES asks for both.
-#ifndef LAMPYRIS_KERNEL_BSDF_DIELECTRIC
-#define LAMPYRIS_KERNEL_BSDF_DIELECTRIC
+#ifndef LAMPYRIS_MATERIALS_DIELECTRIC
+#define LAMPYRIS_MATERIALS_DIELECTRIC
+
+// ---- The lobe, which is also the interface of coats ------------------------------------------------------------------
 
 // A surface is specular where it is smooth, and where the index hardly changes: microfacets then do not refract.
-FN bool dielectric_is_specular(vec2 alpha, float eta) { return ggx_is_smooth(alpha) || abs(eta - 1.0f) < 1e-4f; }
+FN bool dielectric_lobe_is_specular(vec2 alpha, float eta) { return ggx_is_smooth(alpha) || abs(eta - 1.0f) < 1e-4f; }
 
 // Probability of reflection under `lobes`, from Fresnel's reflectance r; negative where nothing can be chosen.
-FN float dielectric_choice(float r, uint lobes) {
+FN float dielectric_lobe_choice(float r, uint lobes) {
     if (lobes == LOBE_BOTH_SIDES) return r;
     if (lobes == LOBE_REFLECTION) return r > 0.0f ? 1.0f : -1.0f;
     return r < 1.0f ? 0.0f : -1.0f;
@@ -28,9 +30,9 @@ FN float rough_refraction_pdf(vec2 alpha, float eta, vec3 o, float d, float do_m
     return ggx_visible_scale(o, alpha) * d * abs(do_m * di_m) * eta * eta / length2;
 }
 
-FN vec3 dielectric_eval(vec2 alpha, float eta_up, vec3 wo, vec3 wi, uint transport, uint lobes, OUT(float) pdf) {
+FN vec3 dielectric_lobe_eval(vec2 alpha, float eta_up, vec3 wo, vec3 wi, uint transport, uint lobes, OUT(float) pdf) {
     pdf = 0.0f;
-    if (dielectric_is_specular(alpha, eta_up)) return vec3(0.0f);
+    if (dielectric_lobe_is_specular(alpha, eta_up)) return vec3(0.0f);
     bool below = wo.z < 0.0f;
     vec3 o = below ? -wo : wo;
     vec3 i = below ? -wi : wi;
@@ -46,7 +48,7 @@ FN vec3 dielectric_eval(vec2 alpha, float eta_up, vec3 wo, vec3 wi, uint transpo
     if (!(do_m > 0.0f) || (di_m > 0.0f) != reflected) return vec3(0.0f);
     // The refracted cosine is known: near total reflection it is more accurate than what follows from the other.
     float r = reflected ? fresnel_dielectric(do_m, eta) : fresnel_of_cosines(do_m, -di_m, eta);
-    float choice = dielectric_choice(r, lobes);
+    float choice = dielectric_lobe_choice(r, lobes);
     float d = ggx_d(m, alpha);
     if (reflected) {
         pdf = max(choice, 0.0f) * 0.25f * ggx_visible_scale(o, alpha) * d;
@@ -56,17 +58,17 @@ FN vec3 dielectric_eval(vec2 alpha, float eta_up, vec3 wo, vec3 wi, uint transpo
     return vec3((1.0f - r) * rough_refraction_value(alpha, eta, o, i, d, do_m, di_m, length2, transport));
 }
 
-FN bool dielectric_sample(vec2 alpha, float eta_up, vec3 wo, float uc, vec2 u, uint transport, uint lobes,
-                          INOUT(BsdfSample) s) {
+FN bool dielectric_lobe_sample(vec2 alpha, float eta_up, vec3 wo, float uc, vec2 u, uint transport, uint lobes,
+                               INOUT(BsdfSample) s) {
     bool below = wo.z < 0.0f;
     vec3 o = below ? -wo : wo;
     float eta = below ? 1.0f / eta_up : eta_up;
-    bool specular = dielectric_is_specular(alpha, eta_up);
+    bool specular = dielectric_lobe_is_specular(alpha, eta_up);
     vec3 m = specular ? vec3(0.0f, 0.0f, 1.0f) : ggx_sample_visible(o, alpha, u);
     float do_m = dot3(o, m);
     if (!(do_m > 0.0f)) return false;
     float r = fresnel_dielectric(do_m, eta);
-    float choice = dielectric_choice(r, lobes);
+    float choice = dielectric_lobe_choice(r, lobes);
     if (choice < 0.0f) return false;
     bool reflected = uc < choice;
     vec3 i = 2.0f * do_m * m - o;
@@ -98,15 +100,31 @@ FN bool dielectric_sample(vec2 alpha, float eta_up, vec3 wo, float uc, vec2 u, u
     return s.pdf > 0.0f;
 }
 
-FN bool thin_dielectric_sample(float eta, vec3 wo, float uc, INOUT(BsdfSample) s) {
-    float c = abs(wo.z);
-    float r = pane_reflectance(fresnel_dielectric(c, eta));
-    bool reflected = uc < r;
-    s.wi = reflected ? vec3(-wo.x, -wo.y, wo.z) : -wo;
-    s.pdf = reflected ? r : 1.0f - r;
-    s.f = vec3(s.pdf / c);
-    s.lobe = (reflected ? LOBE_REFLECTION : LOBE_TRANSMISSION) | LOBE_SPECULAR;
-    return s.pdf > 0.0f;
+// ---- The material ----------------------------------------------------------------------------------------------------
+
+FN Bsdf dielectric_make(IN(MaterialRecord) m) {
+    Bsdf b = no_bsdf();
+    b.eta = bounded_eta(m.floats.z);
+    b.alpha = record_alpha(m);
+    return b;
+}
+
+FN bool dielectric_is_specular(IN(Bsdf) b) { return dielectric_lobe_is_specular(b.alpha, b.eta); }
+FN bool dielectric_chooses_lobe(IN(Bsdf) b) { return true; }
+FN bool dielectric_transmits(IN(Bsdf) b) { return true; }
+FN vec3 dielectric_albedo(IN(Bsdf) b) { return vec3(1.0f); }
+
+FN uint dielectric_visible_action(IN(Bsdf) b, float roughness) {
+    if (dielectric_is_specular(b)) return VISIBLE_FOLLOW;
+    return max(b.alpha.x, b.alpha.y) < roughness ? VISIBLE_FOLLOW : VISIBLE_GATHER;
+}
+
+FN vec3 dielectric_eval(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport, OUT(float) pdf) {
+    return dielectric_lobe_eval(b.alpha, b.eta, wo, wi, transport, LOBE_BOTH_SIDES, pdf);
+}
+
+FN bool dielectric_sample(IN(Bsdf) b, vec3 wo, float uc, vec2 u, uint transport, INOUT(BsdfSample) s) {
+    return dielectric_lobe_sample(b.alpha, b.eta, wo, uc, u, transport, LOBE_BOTH_SIDES, s);
 }
 
 #endif

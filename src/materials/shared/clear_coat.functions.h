@@ -4,8 +4,10 @@
 // whatever came before, so that the walk's events at the base are a geometric series:
 //   f = (rho / pi) t(wo) t(wi) / eta^2 * sum_{k < K} (rho A)^k,   t(w) = (1 - F(w)) T(w inside),
 // with K the number of times that max_depth lets the walk reach the base. The expectation is the walk's, without its noise.
-#ifndef LAMPYRIS_KERNEL_BSDF_CLEAR_COAT
-#define LAMPYRIS_KERNEL_BSDF_CLEAR_COAT
+#ifndef LAMPYRIS_MATERIALS_CLEAR_COAT
+#define LAMPYRIS_MATERIALS_CLEAR_COAT
+
+#include "materials/diffuse/diffuse.material.h"
 
 FN bool clear_coat_applies(IN(Bsdf) b) { return ggx_is_smooth(b.alpha) && is_black(b.albedo) && b.eta > 1.0001f; }
 
@@ -76,7 +78,7 @@ FN bool clear_coat_sample(IN(Bsdf) b, vec3 wo, float uc, vec2 u, INOUT(BsdfSampl
         s.lobe = LOBE_REFLECTION | LOBE_SPECULAR;
         return true;
     }
-    if (!diffuse_sample(b.color0, wo, u, s)) return false;
+    if (!diffuse_lobe_sample(b.color0, wo, u, s)) return false;
     s.f = clear_coat_value(b, c, abs(s.wi.z));
     s.pdf *= 1.0f - r;
     return true;

@@ -1,5 +1,5 @@
 // Material "diffuse": Lambert's law.
-#include "core/scene/materials/common.h"
+#include "materials/shared/host.h"
 
 namespace lampyris {
 
@@ -7,6 +7,7 @@ namespace {
 
 void build(MaterialContext& context) {
     context.record.data.x = kernel::MATERIAL_DIFFUSE;
+    context.record.floats2.w = kRoughestDiffuse;
     set_color0(context,
                read_color(context.build, context.reader, "reflectance", SpectrumUse::kAlbedo, glm::vec3(0.5f)));
     read_surface_detail(context);

@@ -1,0 +1,1 @@
+lampyris_material(diffuse RANK 10)
