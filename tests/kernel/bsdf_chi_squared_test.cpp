@@ -3,8 +3,7 @@
 //
 // False alarms: the tests of this file fail by chance with probability below kFalseAlarm in all (Bonferroni's correction over
 // cases and backends). Streams are seeded, so that a run that passed passes again.
-#include "support/bsdf_probe.h"
-#include "support/histogram.h"
+#include "support/bsdf_chi_squared.h"
 
 #include <gtest/gtest.h>
 
@@ -14,8 +13,6 @@ using namespace lampyris::test;
 namespace {
 
 constexpr double kFalseAlarm = 2.5e-6;
-constexpr size_t kSamples = 100000;
-constexpr int kCellsZ = 20, kCellsPhi = 16, kSub = 14;
 
 struct Case {
     std::string name;
@@ -43,30 +40,13 @@ std::vector<Case> cases() {
     return all;
 }
 
-ChiSquaredResult run(BsdfProber& prober, const BsdfProbe& sampled, const BsdfProbe& density) {
-    Domain sphere = sphere_domain();
-    Histogram histogram{kCellsZ, kCellsPhi};
-    for (const ProbeSample& s : prober.sample(sampled, kSamples)) {
-        if (s.found())
-            histogram.add(sphere, s.wi_pdf);
-        else
-            histogram.miss();
-    }
-    auto expected = expected_counts(sphere, kCellsZ, kCellsPhi, kSub, kSamples, [&](const std::vector<vec4>& wi) {
-        std::vector<double> values;
-        for (vec4 f_pdf : prober.eval_at_wo(density, wi)) values.push_back(f_pdf.w);
-        return values;
-    });
-    return chi_squared_test(histogram.cells, expected);
-}
-
 TEST(BsdfChiSquared, SamplesFollowTheDensity) {
     std::vector<Case> all = cases();
     std::vector<std::string> backends = usable_backends();
     double level = kFalseAlarm / double(all.size() * backends.size());
     for (const std::string& backend : backends) {
         for (const Case& c : all) {
-            ChiSquaredResult r = run(BsdfProber::on(backend), c.probe, c.probe);
+            ChiSquaredResult r = chi_squared(BsdfProber::on(backend), c.probe, c.probe);
             EXPECT_GE(r.p, level) << backend << ", " << c.name << ": chi^2 " << r.statistic << " with " << r.dof
                                   << " dof, p = " << r.p << r.impossible;
             EXPECT_GT(r.dof, 20) << c.name;
@@ -80,7 +60,7 @@ TEST(BsdfChiSquared, RejectsWrongDensities) {
     BsdfProber& prober = BsdfProber::on(usable_backends().front());
     auto p_of = [&](BsdfProbe sampled, BsdfProbe density) {
         sampled.wo = density.wo = vec4(direction(0.7, 1), 0);
-        return run(prober, sampled, density).p;
+        return chi_squared(prober, sampled, density).p;
     };
     EXPECT_LT(p_of(conductor(0.2f, 3, 0.2f, 0.2f), conductor(0.2f, 3, 0.215f, 0.215f)), level);
     EXPECT_LT(p_of(conductor(0.2f, 3, 0.5f, 0.15f), conductor(0.2f, 3, 0.15f, 0.5f)), level);
