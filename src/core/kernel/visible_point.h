@@ -1,4 +1,4 @@
-// Where photons are kept for the eye paths of photon mapping. What an eye path does at a surface says bsdf_visible_action.
+// On which surfaces photons are kept for the eye paths of photon mapping. bsdf_visible_action says what they do there.
 #ifndef LAMPYRIS_KERNEL_VISIBLE_POINT
 #define LAMPYRIS_KERNEL_VISIBLE_POINT
 

@@ -20,7 +20,7 @@ kernel::MaterialRecord blank_material() {
     record.textures2 = kernel::uvec4(kernel::NONE);
     record.extra = {0u, 0u, kernel::NONE, kernel::NONE};
     record.color0 = kernel::vec4(0.5f, 0.5f, 0.5f, 1.0f);
-    record.floats2.w = 1e30f;  // eye paths gather on it, unless the material knows better
+    record.floats2.w = kRoughestDiffuse;
     return record;
 }
 

@@ -148,6 +148,10 @@ struct MaterialContext {
     void ask(uint64_t effect) { build.ask(effect, asked_by); }
 };
 using MaterialFactory = void (*)(MaterialContext&);
+// MaterialRecord::floats2.w, the roughness of a material's roughest lobe: photons are kept on it if an eye path may gather there,
+// which is where this is no less than the integrator's `glossy`. A material that does not say counts as diffuse.
+constexpr float kRoughestDiffuse = 1e30f;
+constexpr float kNeverGathers = 0.0f;  // delta lobes alone
 Registry<MaterialFactory>& material_registry();
 
 struct MediumContext {

@@ -19,13 +19,7 @@ Roughness read_roughness(MaterialContext& context, const std::string& prefix);
 ParameterSpec remap_spec();
 // The same, into the record's slots for the roughness (floats.x and .y), remapped if "remaproughness" says so.
 Roughness read_base_roughness(MaterialContext& context, const std::string& prefix);
-
-// ---- How rough it gets -----------------------------------------------------------------------------------------------
-// MaterialRecord::floats2.w: photons are kept on a material if an eye path may gather on it, which is where this is no less
-// than the integrator's `glossy`. Without a word of the material it is kRoughestDiffuse, as if it were diffuse.
-constexpr float kRoughestDiffuse = 1e30f;
-constexpr float kNeverGathers = 0.0f;  // delta lobes alone
-// The GGX alpha of a roughness; textured, it may be anything.
+// Its GGX alpha, for MaterialRecord::floats2.w (core/scene/builder.h); textured, it may be anything.
 float roughest_alpha(const Roughness& roughness, bool remapped);
 
 // An index of refraction that does not depend on the wavelength. A spectrum that varies is dispersion, which is unsupported;
