@@ -4,9 +4,9 @@
 
 BUFFER_RO(1, FacingParams, params)
 
-FN vec3 radiance_along(IN(Ray) ray, INOUT(Sampler) numbers, INOUT(FirstHit) first) {
+FN Spectrum radiance_along(IN(Ray) ray, INOUT(Sampler) numbers, INOUT(FirstHit) first) {
     Surface s;
-    if (!intersect_scene(ray, s)) return vec3(0.0f);
-    first = first_hit(s, vec3(1.0f), s.distance);
-    return vec3(pow_of(abs(dot3(s.ns, ray.direction)), params[0].power));
+    if (!intersect_scene(ray, s)) return Spectrum(0.0f);
+    first = first_hit(s, Spectrum(1.0f), s.distance);
+    return Spectrum(pow_of(abs(dot3(s.ns, ray.direction)), params[0].power));
 }

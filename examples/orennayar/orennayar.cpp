@@ -9,7 +9,7 @@ void build(MaterialContext& context) {
     context.record.data.x = kernel::MATERIAL_ORENNAYAR;
     context.ask(kernel::EFFECT_OREN_NAYAR);
     set_color0(context,
-               read_color(context.build, context.reader, "reflectance", SpectrumUse::kAlbedo, glm::vec3(0.5f)));
+               read_color(context.build, context.reader, "reflectance", SpectrumUse::kAlbedo, Spectrum(0.5f)));
     const FloatSlot roughness = read_float(context.build, context.reader, "roughness");
     context.record.floats.x = roughness.value;
     context.record.textures.w = roughness.texture;

@@ -8,7 +8,7 @@
 // The record's slots hold what the scene asks for, textures included. What scenes may not ask for ends here.
 FN Bsdf orennayar_make(IN(MaterialRecord) m) {
     Bsdf b = no_bsdf();
-    b.color0 = bounded_share(vec3(m.color0));
+    b.color0 = bounded_share(spectrum_of(m.color0));
     b.g = clamp(m.floats.x, 0.0f, 1.0f);
     return b;
 }
@@ -16,19 +16,19 @@ FN Bsdf orennayar_make(IN(MaterialRecord) m) {
 FN bool orennayar_is_specular(IN(Bsdf) b) { return false; }
 FN bool orennayar_chooses_lobe(IN(Bsdf) b) { return false; }
 FN bool orennayar_transmits(IN(Bsdf) b) { return false; }
-FN vec3 orennayar_albedo(IN(Bsdf) b) { return b.color0; }
+FN Spectrum orennayar_albedo(IN(Bsdf) b) { return b.color0; }
 FN uint orennayar_visible_action(IN(Bsdf) b, float roughness) { return VISIBLE_GATHER; }
 
 // (1 + sigma s / t) / (pi + (pi / 2 - 2 / 3) sigma), with s the product of the sines with the cosine of the difference in azimuth.
-FN vec3 orennayar_value(IN(Bsdf) b, vec3 wo, vec3 wi) {
+FN Spectrum orennayar_value(IN(Bsdf) b, vec3 wo, vec3 wi) {
     float s = dot3(wo, wi) - wo.z * wi.z;
     float t = s > 0.0f ? max(abs(wo.z), abs(wi.z)) : 1.0f;
     return b.color0 * (max(1.0f + b.g * s / t, 0.0f) / (PI + 0.90412966f * b.g));
 }
 
-FN vec3 orennayar_eval(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport, OUT(float) pdf) {
+FN Spectrum orennayar_eval(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport, OUT(float) pdf) {
     pdf = 0.0f;
-    if (!same_hemisphere(wo, wi)) return vec3(0.0f);
+    if (!same_hemisphere(wo, wi)) return Spectrum(0.0f);
     pdf = pdf_cosine_hemisphere(abs(wi.z));
     return orennayar_value(b, wo, wi);
 }

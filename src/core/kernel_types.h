@@ -1,6 +1,8 @@
 // The kernels' records (core/kernel/layout.h) for host code, in namespace lampyris::kernel.
 #pragma once
 
+#include "core/spectrum.h"
+
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>

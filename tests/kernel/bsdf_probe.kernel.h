@@ -59,7 +59,7 @@ KERNEL(bsdf_probe) {
     vec3 wi = vec3(0.0f, 0.0f, 1.0f);
     float pdf = 0.0f;
     if (operation == PROBE_PROPERTIES) {
-        results[index] = vec4(bsdf_albedo(b), bsdf_is_specular(b) ? 1.0f : 0.0f);
+        results[index] = slot_of(bsdf_albedo(b), bsdf_is_specular(b) ? 1.0f : 0.0f);
         return;
     }
     if (operation == PROBE_EVAL || operation == PROBE_EVAL_AT_WO) {
@@ -69,8 +69,8 @@ KERNEL(bsdf_probe) {
         } else {
             wi = vec3(inputs[index]);
         }
-        vec3 f = bsdf_eval_pdf(b, wo, wi, transport, pdf);
-        results[index] = vec4(f, pdf);
+        Spectrum f = bsdf_eval_pdf(b, wo, wi, transport, pdf);
+        results[index] = slot_of(f, pdf);
         return;
     }
     Rng rng = rng_begin(p.what.y, index);
@@ -83,9 +83,9 @@ KERNEL(bsdf_probe) {
     if (operation == PROBE_EVAL_UNIFORM) {
         s.wi = sample_uniform_sphere(u);
         s.pdf = pdf_uniform_sphere();
-        vec3 value = bsdf_eval(b, wo, s.wi, transport);
+        Spectrum value = bsdf_eval(b, wo, s.wi, transport);
         results[4u * index] = vec4(s.wi, s.pdf);
-        results[4u * index + 1u] = vec4(value, 1.0f);
+        results[4u * index + 1u] = slot_of(value, 1.0f);
         return;
     } else {
         if (operation == PROBE_EVERYTHING) {
@@ -100,10 +100,10 @@ KERNEL(bsdf_probe) {
             if (operation == PROBE_SAMPLE) wi = s.wi;
         }
     }
-    vec3 f = bsdf_eval(b, wo, wi, transport);
+    Spectrum f = bsdf_eval(b, wo, wi, transport);
     pdf = bsdf_pdf(b, wo, wi, transport);
     results[4u * index] = vec4(s.wi, s.pdf);
-    results[4u * index + 1u] = vec4(s.f, s.eta);
-    results[4u * index + 2u] = vec4(f, pdf);
+    results[4u * index + 1u] = slot_of(s.f, s.eta);
+    results[4u * index + 2u] = slot_of(f, pdf);
     results[4u * index + 3u] = vec4(float(s.lobe), float(found), float(s.pdf_is_proportional), 0.0f);
 }

@@ -25,7 +25,7 @@ KERNEL(emission_probe) {
     uvec2 v = uvec2(0u);
     v.x = rng_bits(rng);
     v.y = rng_bits(rng);
-    vec3 flux = vec3(0.0f);
+    Spectrum flux = Spectrum(0.0f);
     if (p.what.x == 0u) {
         Emission e;
         if (emit_photon(choice, side, u, v, e)) {
@@ -43,5 +43,5 @@ KERNEL(emission_probe) {
             flux = light.radiance * (max(dot3(light.wi, n), 0.0f) * area / light.pdf);
         }
     }
-    results[index] = vec4(flux.x, flux.y, flux.z, 0.0f);
+    results[index] = slot_of(flux, 0.0f);
 }

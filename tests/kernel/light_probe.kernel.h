@@ -65,7 +65,7 @@ KERNEL(light_probe) {
         light = found.light;
         look = any && found.is_delta == 0u;
     }
-    vec3 radiance = vec3(0.0f);
+    Spectrum radiance = Spectrum(0.0f);
     float pdf = 0.0f;
     float first = 0.0f;
     float distance = 0.0f;
@@ -93,7 +93,7 @@ KERNEL(light_probe) {
             o = offset_origin(s.position, s.error, s.ng, d);
         }
     }
-    results[2u * index] = sampling ? vec4(d, found.pdf) : vec4(radiance, pdf);
+    results[2u * index] = sampling ? vec4(d, found.pdf) : slot_of(radiance, pdf);
     results[2u * index + 1u] =
-        sampling ? vec4(found.radiance.x, found.distance, first, distance) : vec4(distance, hits, first, 0.0f);
+        sampling ? vec4(found.radiance[0], found.distance, first, distance) : vec4(distance, hits, first, 0.0f);
 }

@@ -51,9 +51,9 @@ KERNEL(material_probe) {
     Bsdf b = material_bsdf(s, vec3(p.wo.x, p.wo.y, p.wo.z), frame);
     MaterialAnswer a;
     a.what = uvec4(b.kind, s.material, b.flags, b.max_depth);
-    a.color0 = vec4(b.color0.x, b.color0.y, b.color0.z, 0.0f);
-    a.color1 = vec4(b.color1.x, b.color1.y, b.color1.z, 0.0f);
-    a.albedo = vec4(b.albedo.x, b.albedo.y, b.albedo.z, 0.0f);
+    a.color0 = slot_of(b.color0, 0.0f);
+    a.color1 = slot_of(b.color1, 0.0f);
+    a.albedo = slot_of(b.albedo, 0.0f);
     a.alpha = vec4(b.alpha.x, b.alpha.y, b.alpha_base.x, b.alpha_base.y);
     a.coat = vec4(b.eta, b.thickness, b.g, opacity);
     a.frame_x = vec4(frame.x.x, frame.x.y, frame.x.z, 0.0f);

@@ -19,15 +19,15 @@ FN Gathered gather_begin(uint query) {
 }
 
 FN void gather_add(INOUT(Gathered) g, uint query, IN(PhotonRecord) photon, float distance_squared, float weight) {
-    vec3 power = photon_power(photon) * weight;
-    g.sum += vec4(power.x, power.y, power.z, weight);
+    Spectrum power = photon_power(photon) * weight;
+    g.sum += slot_of(power, weight);
     g.found += 1u;
     g.checksum += hash32(photon.place.w);
 }
 
 FN vec4 gather_value(uint query, IN(PhotonRecord) photon, float distance_squared) {
-    vec3 power = photon_power(photon);
-    return vec4(power.x, power.y, power.z, 1.0f);
+    Spectrum power = photon_power(photon);
+    return slot_of(power, 1.0f);
 }
 
 // No keys: the checksum is 0.

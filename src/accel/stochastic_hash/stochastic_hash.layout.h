@@ -47,8 +47,8 @@ FN uint race_photon(uint x, uint block, uint toss) {
 
 // The weight by which flux selection prefers a photon: a whole number, so that sums of them have no order.
 FN uint flux_weight(IN(PhotonRecord) photon, float scale) {
-    vec3 power = photon_power(photon);
-    float w = (power.x + power.y + power.z) * scale;
+    Spectrum power = photon_power(photon);
+    float w = (power[0] + power[1] + power[2]) * scale;
     return scale > 0.0f && w > 1.0f ? uint(min(w, 4194304.0f)) : (scale > 0.0f ? 1u : 1024u);
 }
 

@@ -7,6 +7,7 @@
 
 // GLSL wants this order.
 // clang-format off
+#include "core/kernel/spectrum.h"
 #include "core/kernel/sampling.h"
 #include "core/kernel/fresnel.h"
 #include "core/kernel/microfacet.h"
@@ -14,11 +15,11 @@
 #include "materials/dispatch.h"
 // clang-format on
 
-FN vec3 bsdf_eval_pdf(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport, OUT(float) pdf) {
+FN Spectrum bsdf_eval_pdf(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport, OUT(float) pdf) {
     return bsdf_eval_jobs(b, wo, wi, transport, LAYERED_VALUE | LAYERED_DENSITY, pdf);
 }
 
-FN vec3 bsdf_eval(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport) {
+FN Spectrum bsdf_eval(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport) {
     float pdf;
     return bsdf_eval_jobs(b, wo, wi, transport, LAYERED_VALUE, pdf);
 }

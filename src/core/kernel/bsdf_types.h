@@ -20,9 +20,9 @@ CONST uint VISIBLE_SPLIT = 2u;   // a smooth coat over something rough: one or t
 struct Bsdf {
     uint kind;        // MATERIAL_*, never MATERIAL_MIX
     uint flags;       // MATERIAL_ENERGY_COMPENSATION, MATERIAL_EXACT_COAT
-    vec3 color0;      // diffuse, diffuse transmission, coated diffuse: reflectance; conductors: n of n + ik
-    vec3 color1;      // diffuse transmission: transmittance; conductors: k
-    vec3 albedo;      // coats: single-scattering albedo of the medium between the layers
+    Spectrum color0;      // diffuse, diffuse transmission, coated diffuse: reflectance; conductors: n of n + ik
+    Spectrum color1;      // diffuse transmission: transmittance; conductors: k
+    Spectrum albedo;      // coats: single-scattering albedo of the medium between the layers
     vec2 alpha;       // roughness; of coats: of the interface. From ggx_alpha: zero where it is smooth
     vec2 alpha_base;  // coated conductor: roughness of the metal
     float eta;        // dielectrics and coats: index on the side of -z over that of +z
@@ -39,9 +39,9 @@ FN Bsdf no_bsdf() {
     Bsdf b;
     b.kind = MATERIAL_INTERFACE;
     b.flags = 0u;
-    b.color0 = vec3(0.0f);
-    b.color1 = vec3(0.0f);
-    b.albedo = vec3(0.0f);
+    b.color0 = Spectrum(0.0f);
+    b.color1 = Spectrum(0.0f);
+    b.albedo = Spectrum(0.0f);
     b.alpha = vec2(0.0f, 0.0f);
     b.alpha_base = vec2(0.0f, 0.0f);
     b.eta = 1.0f;
@@ -57,8 +57,8 @@ FN Bsdf no_bsdf() {
 // ---- Parameters from a record ----------------------------------------------------------------------------------------
 // These bound every parameter to where the models' functions are finite: scenes may ask for anything.
 
-FN vec3 bounded_share(vec3 c) { return vec3(clamp(c.x, 0.0f, 1.0f), clamp(c.y, 0.0f, 1.0f), clamp(c.z, 0.0f, 1.0f)); }
-FN vec3 bounded_index(vec3 c) { return vec3(clamp(c.x, 0.0f, 1e4f), clamp(c.y, 0.0f, 1e4f), clamp(c.z, 0.0f, 1e4f)); }
+FN Spectrum bounded_share(Spectrum s) { return clamp_each(s, 0.0f, 1.0f); }
+FN Spectrum bounded_index(Spectrum s) { return clamp_each(s, 0.0f, 1e4f); }
 // A relative index; pbrt reads 0 as 1.
 FN float bounded_eta(float eta) { return eta > 0.0f ? clamp(eta, 0.01f, 100.0f) : 1.0f; }
 
@@ -76,7 +76,7 @@ FN vec2 record_alpha(IN(MaterialRecord) m) {
 
 struct BsdfSample {
     vec3 wi;
-    vec3 f;                    // without the cosine; for a specular lobe f |cos| / pdf is the weight
+    Spectrum f;                    // without the cosine; for a specular lobe f |cos| / pdf is the weight
     float pdf;                 // 1/sr; for a specular lobe the probability of choosing it
     float eta;                 // relative index along a refraction (transmitted over incident side), else 1
     uint lobe;                 // LOBE_REFLECTION or LOBE_TRANSMISSION, and LOBE_DIFFUSE, LOBE_GLOSSY or LOBE_SPECULAR
@@ -86,7 +86,7 @@ struct BsdfSample {
 FN BsdfSample no_bsdf_sample() {
     BsdfSample s;
     s.wi = vec3(0.0f, 0.0f, 1.0f);
-    s.f = vec3(0.0f);
+    s.f = Spectrum(0.0f);
     s.pdf = 0.0f;
     s.eta = 1.0f;
     s.lobe = 0u;

@@ -4,18 +4,18 @@
 
 // `weighted`: by multiple importance sampling with the directions that bsdf_sample chooses; a path that takes no such sample
 // wants the whole. `medium`: through which the vertex was reached, at the surface s. u_choice and u: bits of random numbers.
-FN vec3 direct_light(IN(Surface) s, IN(Vertex) v, uint medium, uint u_choice, uvec2 u, bool weighted) {
+FN Spectrum direct_light(IN(Surface) s, IN(Vertex) v, uint medium, uint u_choice, uvec2 u, bool weighted) {
     LightSample light;
-    if (!light_sample(s.position, u_choice, u, light)) return vec3(0.0f);
+    if (!light_sample(s.position, u_choice, u, light)) return Spectrum(0.0f);
     vec3 wi = to_local(v.frame, light.wi);
     float density;
     uint jobs = weighted ? LAYERED_VALUE | LAYERED_DENSITY : LAYERED_VALUE;
-    vec3 f = bsdf_eval_jobs(v.bsdf, v.wo, wi, TRANSPORT_RADIANCE, jobs, density) * abs(wi.z);
-    if (is_black(f)) return vec3(0.0f);
-    vec3 arriving = scene_transmittance(s, light.wi, light.distance, light.end, medium);
-    if (is_black(arriving)) return vec3(0.0f);
+    Spectrum f = bsdf_eval_jobs(v.bsdf, v.wo, wi, TRANSPORT_RADIANCE, jobs, density) * abs(wi.z);
+    if (is_black(f)) return Spectrum(0.0f);
+    Spectrum arriving = scene_transmittance(s, light.wi, light.distance, light.end, medium);
+    if (is_black(arriving)) return Spectrum(0.0f);
     if (!weighted || light.is_delta != 0u) density = 0.0f;
-    vec3 reflected = f * light.radiance * power_heuristic_over_pdf(light.pdf, density);
+    Spectrum reflected = f * light.radiance * power_heuristic_over_pdf(light.pdf, density);
     return HAS(EFFECT_ALPHA | EFFECT_MEDIUM) ? reflected * arriving : reflected;
 }
 

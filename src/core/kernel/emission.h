@@ -8,7 +8,7 @@
 struct Emission {
     vec3 origin;  // beyond the rounding error of a light's surface
     vec3 direction;
-    vec3 power;
+    Spectrum power;
     uint light;
     uint medium;  // in which it starts
 };
@@ -37,7 +37,7 @@ FN bool emit_from_area(uint index, float u_side, vec2 u_place, vec2 u_direction,
         if (u_side < 0.5f) local.z = -local.z;
     }
     e.direction = unit(to_world(frame_from_z(area_emission_side(index, place.ng)), local));
-    vec3 radiance = area_emission(index, place.position, place.ng, place.uv, e.direction);
+    Spectrum radiance = area_emission(index, place.position, place.ng, place.uv, e.direction);
     if (HAS(EFFECT_ALPHA)) radiance = radiance * light_alpha(light, place.position, place.ng, place.uv);
     e.power = radiance * (PI * sides / (place.pdf * light.emission.w));
     e.origin = offset_origin(place.position, place.error, place.ng, e.direction);
@@ -75,7 +75,7 @@ FN bool emit_from_point(uint index, vec2 u_place, vec2 u_direction, INOUT(Emissi
 FN bool emit_photon(uint u_choice, float u_side, vec2 u_place, uvec2 u_direction, OUT(Emission) e) {
     e.origin = vec3(0.0f);
     e.direction = vec3(0.0f, 0.0f, 1.0f);
-    e.power = vec3(0.0f);
+    e.power = Spectrum(0.0f);
     uint count = scene[0].light_count;
     e.light = NONE;
     e.medium = MEDIUM_VACUUM;
@@ -87,7 +87,7 @@ FN bool emit_photon(uint u_choice, float u_side, vec2 u_place, uvec2 u_direction
         found = emit_from_area(e.light, u_side, u_place, unit_floats(u_direction), e);
     } else if (HAS(EFFECT_ENVIRONMENT) && (kind == LIGHT_INFINITE || kind == LIGHT_INFINITE_IMAGE)) {
         vec3 to_light;
-        vec3 radiance;
+        Spectrum radiance;
         float pdf;
         found = environment_sample(e.light, u_direction, to_light, radiance, pdf);
         if (found) {
@@ -99,7 +99,7 @@ FN bool emit_photon(uint u_choice, float u_side, vec2 u_place, uvec2 u_direction
         LightRecord light = lights[e.light];
         e.direction = -vec3(light.v0);
         e.origin = distant_origin(vec3(light.v0), u_place);
-        e.power = vec3(light.emission) * (distant_area() / light.emission.w);
+        e.power = spectrum_of(light.emission) * (distant_area() / light.emission.w);
         found = true;
     } else if (HAS(EFFECT_POINT_LIGHTS) || HAS(EFFECT_PROJECTION_LIGHTS)) {
         found = emit_from_point(e.light, u_place, unit_floats(u_direction), e);

@@ -26,9 +26,9 @@ FN uvec2 environment_texel(uint light, IN(TransformRecord) m, vec3 direction) {
                  min(uint(max(st.y, 0.0f) * float(ids.z)), ids.z - 1u));
 }
 
-FN vec3 infinite_image_radiance(uint light, uvec2 texel) {
+FN Spectrum infinite_image_radiance(uint light, uvec2 texel) {
     ImageRecord image = images[lights[light].data.z];
-    return vec3(lights[light].emission) * image_texel(image, int(texel.x), int(texel.y));
+    return spectrum_of(lights[light].emission) * spectrum_of_rgb(image_texel(image, int(texel.x), int(texel.y)));
 }
 
 // Without the probability of choosing the light.
@@ -38,15 +38,15 @@ FN float infinite_image_pdf(uint light, IN(TransformRecord) m, vec3 direction, u
 }
 
 // Radiance from the infinite lights along a ray that leaves the scene in `direction` (unit length).
-FN vec3 environment_radiance(vec3 direction) {
-    vec3 sum = vec3(0.0f);
+FN Spectrum environment_radiance(vec3 direction) {
+    Spectrum sum = Spectrum(0.0f);
     if (!HAS(EFFECT_ENVIRONMENT)) return sum;
     for (uint light = 0u; light < scene[0].infinite_lights; ++light) {
         if (HAS(EFFECT_ENVIRONMENT_IMAGE) && lights[light].data.x == LIGHT_INFINITE_IMAGE) {
             TransformRecord m = transforms[lights[light].data.w];
             sum = sum + infinite_image_radiance(light, environment_texel(light, m, direction));
         } else {
-            sum = sum + vec3(lights[light].emission);
+            sum = sum + spectrum_of(lights[light].emission);
         }
     }
     return sum;
@@ -69,8 +69,8 @@ FN float environment_pdf(vec3 direction) {
 
 // Samples one infinite light. Where there are several, the result is what all of them send from that direction, with the
 // density of the mixture: that is also what a ray that finds the direction by chance sees and is weighted by.
-FN bool environment_sample(uint light, uvec2 u, OUT(vec3) direction, OUT(vec3) radiance, OUT(float) pdf) {
-    radiance = vec3(lights[light].emission);
+FN bool environment_sample(uint light, uvec2 u, OUT(vec3) direction, OUT(Spectrum) radiance, OUT(float) pdf) {
+    radiance = spectrum_of(lights[light].emission);
     pdf = pdf_uniform_sphere() * lights[light].emission.w;
     if (HAS(EFFECT_ENVIRONMENT_IMAGE) && lights[light].data.x == LIGHT_INFINITE_IMAGE) {
         TransformRecord m = transforms[lights[light].data.w];

@@ -20,11 +20,11 @@ FN float compensated_add(float sum, float value, INOUT(float) low) {
     return next;
 }
 
-// Adds one sample. Radiance that is not finite, or that the sums cannot hold with what they have, is counted and located, not
+// Adds one sample, in linear Rec. 709. Radiance that is not finite, or that the sums cannot hold with what they have, is counted and located, not
 // averaged in: then the result is false. Squares overflow sooner (above 1.8e19), and stay infinite: the variance is not known.
-FN bool film_add(INOUT(FilmPixel) p, vec3 radiance, float weight, uint pass) {
+FN bool film_add(INOUT(FilmPixel) p, vec3 rgb, float weight, uint pass) {
     p.counts.x += 1u;
-    vec3 value = radiance * weight;
+    vec3 value = rgb * weight;
     if (!is_finite3(vec3(p.sum) + value)) {
         if (p.counts.z == 0u) p.counts.w = pass;
         p.counts.z += 1u;
@@ -64,9 +64,9 @@ FN FirstHit no_first_hit() {
     return f;
 }
 
-FN FirstHit first_hit(IN(Surface) s, vec3 albedo, float distance) {
+FN FirstHit first_hit(IN(Surface) s, Spectrum albedo, float distance) {
     FirstHit f;
-    f.albedo = albedo;
+    f.albedo = rgb_of(albedo);
     f.normal = s.ns;
     f.distance = distance;
     f.met = 1.0f;
@@ -80,8 +80,8 @@ FN void film_add_first_hit(INOUT(FilmPixel) p, IN(FirstHit) f) {
 }
 
 // What the film makes of radiance before it is added: the sensor's imaging ratio and the clamp of `maxcomponentvalue`.
-FN vec3 film_sensor(vec3 radiance) {
-    vec3 value = radiance * scene[0].camera.lens.w;
+FN vec3 film_sensor(Spectrum radiance) {
+    vec3 value = rgb_of(radiance) * scene[0].camera.lens.w;
     float largest = max_component(value);
     float limit = scene[0].camera.lens.z;
     return limit > 0.0f && largest > limit ? value * (limit / largest) : value;

@@ -49,9 +49,10 @@ FN float fresnel_conductor1(float cos_i, float n, float k) {
     return clamp(0.5f * (rs + rp), 0.0f, 1.0f);
 }
 
-FN vec3 fresnel_conductor(float cos_i, vec3 n, vec3 k) {
-    return vec3(fresnel_conductor1(cos_i, n.x, k.x), fresnel_conductor1(cos_i, n.y, k.y),
-                fresnel_conductor1(cos_i, n.z, k.z));
+FN Spectrum fresnel_conductor(float cos_i, Spectrum n, Spectrum k) {
+#define REFLECTED(i) fresnel_conductor1(cos_i, n[i], k[i])
+    return SPECTRUM_EACH(REFLECTED);
+#undef REFLECTED
 }
 
 // Direction of w (pointing away from the surface, dot(w, n) = cos_i > 0) after refraction through the surface with

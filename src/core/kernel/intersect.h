@@ -241,8 +241,8 @@ FN float aim_at(vec3 o, vec3 end, INOUT(vec3) direction) {
 
 // shadow_ray where surfaces may let the ray pass.
 RARE_FN bool shadow_ray_through(vec3 start_o, vec3 start_direction, float distance, vec3 end, uint start,
-                                OUT(vec3) transmittance) {
-    transmittance = vec3(1.0f);
+                                OUT(Spectrum) transmittance) {
+    transmittance = Spectrum(1.0f);
     vec3 o = start_o;
     vec3 direction = start_direction;
     bool absorbs = HAS(EFFECT_MEDIUM) && start != MEDIA_IGNORED;
@@ -282,15 +282,15 @@ RARE_FN bool shadow_ray_through(vec3 start_o, vec3 start_direction, float distan
 // Whether anything opaque lies between o, outside of a surface, and `end`, `distance` away along the unit direction and outside of
 // a surface, too, if there is one (shadow_end); INFINITE_DISTANCE has no end. If not, `transmittance` is what masked surfaces and
 // media on the way leave, `start` being the medium in which the ray starts.
-FN bool shadow_ray(vec3 o, vec3 direction, float distance, vec3 end, uint start, OUT(vec3) transmittance) {
+FN bool shadow_ray(vec3 o, vec3 direction, float distance, vec3 end, uint start, OUT(Spectrum) transmittance) {
     if (HAS(EFFECT_ALPHA | EFFECT_INTERFACE) && RARELY(CALLED_FOR(EFFECT_ALPHA | EFFECT_INTERFACE))) {
-        vec3 through;
+        Spectrum through;
         bool occluded = shadow_ray_through(o, direction, distance, end, start, through);
         transmittance = through;
         return occluded;
     }
     traced_rays[0] += 1u;
-    transmittance = vec3(1.0f);
+    transmittance = Spectrum(1.0f);
     if (HAS(EFFECT_MEDIUM) && start != MEDIA_IGNORED) transmittance = medium_transmittance(start, distance);
     vec3 aimed = direction;
     float t_max = distance < INFINITE_DISTANCE ? aim_at(o, end, aimed) : INFINITE_DISTANCE;
@@ -300,22 +300,22 @@ FN bool shadow_ray(vec3 o, vec3 direction, float distance, vec3 end, uint start,
 // How much a surface point sees of what lies `distance` away along the unit direction, whatever media lie between; the distance counts
 // from the point's rounding error on.
 FN float scene_openness(IN(Surface) s, vec3 direction, float distance) {
-    vec3 transmittance;
+    Spectrum transmittance;
     vec3 o = origin_beyond(s.position, s.way, direction);
     bool limited = distance < 1e18f;  // no two points of a scene are so far apart, and the square is a float
     vec3 end = limited ? o + distance * direction : vec3(0.0f);
     float reach = limited ? distance : INFINITE_DISTANCE;
-    return shadow_ray(o, direction, reach, end, MEDIA_IGNORED, transmittance) ? 0.0f : transmittance.x;
+    return shadow_ray(o, direction, reach, end, MEDIA_IGNORED, transmittance) ? 0.0f : transmittance[0];
 }
 
 // The share of light that comes to s from `end` (shadow_end), `distance` away along the unit direction. s was reached through
 // `medium`.
-FN vec3 scene_transmittance(IN(Surface) s, vec3 direction, float distance, vec3 end, uint medium) {
-    vec3 transmittance;
+FN Spectrum scene_transmittance(IN(Surface) s, vec3 direction, float distance, vec3 end, uint medium) {
+    Spectrum transmittance;
     uint start = medium_behind(s, direction, medium);
     vec3 o = origin_beyond(s.position, s.way, direction);
     bool occluded = shadow_ray(o, direction, distance, end, start, transmittance);
-    return occluded ? vec3(0.0f) : transmittance;
+    return occluded ? Spectrum(0.0f) : transmittance;
 }
 
 #endif

@@ -9,7 +9,7 @@
 
 struct LightSample {
     vec3 wi;         // unit direction towards the light
-    vec3 radiance;   // arriving from there, if nothing is in between; delta lights: radiance / pdf is what counts
+    Spectrum radiance;   // arriving from there, if nothing is in between; delta lights: radiance / pdf is what counts
     float pdf;       // solid angle, times the probability of choosing the light; delta lights: the latter alone
     float distance;  // INFINITE_DISTANCE: the shadow ray leaves the scene
     vec3 end;        // of the shadow ray, outside of the light's surface (shadow_end)
@@ -29,23 +29,23 @@ FN vec3 area_emission_side(uint light, vec3 ng) {
 }
 
 // Radiance that leaves an area light at a point towards w.
-FN vec3 area_emission(uint light, vec3 position, vec3 ng, vec2 uv, vec3 w) {
+FN Spectrum area_emission(uint light, vec3 position, vec3 ng, vec2 uv, vec3 w) {
     uvec4 data = lights[light].data;
-    if ((data.y & LIGHT_TWO_SIDED) == 0u && !(dot3(area_emission_side(light, ng), w) > 0.0f)) return vec3(0.0f);
-    vec3 radiance = vec3(lights[light].emission);
+    if ((data.y & LIGHT_TWO_SIDED) == 0u && !(dot3(area_emission_side(light, ng), w) > 0.0f)) return Spectrum(0.0f);
+    Spectrum radiance = spectrum_of(lights[light].emission);
     if (HAS(EFFECT_LIGHT_TEXTURES) && data.z != NONE) {
         TextureContext context;
         context.position = position;
         context.normal = ng;
         context.uv = uv;
-        radiance = radiance * max(texture_color(data.z, context), vec3(0.0f));
+        radiance = radiance * spectrum_of_rgb(max(texture_color(data.z, context), vec3(0.0f)));
     }
     return radiance;
 }
 
 // The area light at s as seen from direction w (from s to the viewer, unit length); black where there is none.
-FN vec3 light_emission(IN(Surface) s, vec3 w) {
-    if (!HAS(EFFECT_AREA_LIGHTS) || s.light == NONE) return vec3(0.0f);
+FN Spectrum light_emission(IN(Surface) s, vec3 w) {
+    if (!HAS(EFFECT_AREA_LIGHTS) || s.light == NONE) return Spectrum(0.0f);
     return area_emission(s.light, s.position, s.ng, s.uv, w);
 }
 
@@ -124,22 +124,22 @@ FN float smooth_step_of(float x, float low, float high) {
 
 // Intensity (W/sr per channel) that the light at a point sends in direction w (world, unit length), as pbrt's lights of the
 // same names do (4th edition, sections 12.2.1 and 12.2.3).
-FN vec3 point_light_intensity(IN(LightRecord) light, vec3 w) {
-    vec3 intensity = vec3(light.emission);
+FN Spectrum point_light_intensity(IN(LightRecord) light, vec3 w) {
+    Spectrum intensity = spectrum_of(light.emission);
     if (light.data.x == LIGHT_SPOT) return intensity * smooth_step_of(dot3(vec3(light.v1), w), light.v2.w, light.v1.w);
     if (HAS(EFFECT_PROJECTION_LIGHTS) && light.data.x >= LIGHT_PROJECTION) {
         TransformRecord m = transforms[light.data.w];
         vec3 d = unit(transform_vector(m.from0, m.from1, m.from2, w));
         vec2 st;
         if (light.data.x == LIGHT_PROJECTION) {
-            if (!(d.z >= 1e-3f)) return vec3(0.0f);
+            if (!(d.z >= 1e-3f)) return Spectrum(0.0f);
             st = vec2((d.x / d.z - light.v2.x) / (light.v2.z - light.v2.x),
                       (light.v2.w - d.y / d.z) / (light.v2.w - light.v2.y));
-            if (!(st.x >= 0.0f && st.x <= 1.0f && st.y >= 0.0f && st.y <= 1.0f)) return vec3(0.0f);
+            if (!(st.x >= 0.0f && st.x <= 1.0f && st.y >= 0.0f && st.y <= 1.0f)) return Spectrum(0.0f);
         } else {
             st = square_from_direction(vec3(d.x, d.z, d.y));  // the image's pole is the light's y axis
         }
-        intensity = intensity * vec3(image_lookup(light.data.z, st));
+        intensity = intensity * spectrum_of(image_lookup(light.data.z, st));
     }
     return intensity;
 }
@@ -169,7 +169,7 @@ FN bool light_choice_needs_number() { return scene[0].light_count > LIGHTS_CHOSE
 // no light arrives.
 FN bool light_sample(vec3 ref_p, uint u_choice, uvec2 u_place, OUT(LightSample) s) {
     s.wi = vec3(0.0f, 0.0f, 1.0f);
-    s.radiance = vec3(0.0f);
+    s.radiance = Spectrum(0.0f);
     s.pdf = 0.0f;
     s.distance = INFINITE_DISTANCE;
     s.end = vec3(0.0f);
@@ -196,7 +196,7 @@ FN bool light_sample(vec3 ref_p, uint u_choice, uvec2 u_place, OUT(LightSample) 
     }
     if (HAS(EFFECT_DISTANT_LIGHTS) && kind == LIGHT_DISTANT) {
         s.wi = vec3(lights[s.light].v0);
-        s.radiance = vec3(lights[s.light].emission);
+        s.radiance = spectrum_of(lights[s.light].emission);
         s.pdf = lights[s.light].emission.w;
         s.is_delta = 1u;
         return true;

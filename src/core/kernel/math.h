@@ -40,8 +40,7 @@ FN float abs_dot(vec3 a, vec3 b) { return abs(dot3(a, b)); }
 FN vec3 cross3(vec3 a, vec3 b) { return vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x); }
 // v, turned to the side of n.
 FN vec3 face_forward(vec3 v, vec3 n) { return dot3(v, n) < 0.0f ? -v : v; }
-FN float luminance(vec3 c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }  // Rec. 709
-FN bool is_black(vec3 c) { return c.x == 0.0f && c.y == 0.0f && c.z == 0.0f; }
+FN float luminance(vec3 rgb) { return 0.2126f * rgb.x + 0.7152f * rgb.y + 0.0722f * rgb.z; }  // Rec. 709
 FN bool is_finite(float x) { return (floatBitsToUint(x) & 0x7f800000u) != 0x7f800000u; }
 FN bool is_finite3(vec3 v) { return is_finite(v.x) && is_finite(v.y) && is_finite(v.z); }
 // Bound of the relative error of n operations (Higham 2002, section 3.1).

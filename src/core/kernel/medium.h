@@ -8,10 +8,9 @@
 
 // The share of light that is left after `distance` (Beer and Lambert); over INFINITE_DISTANCE, nothing of what is absorbed at
 // all.
-FN vec3 medium_transmittance(uint medium, float distance) {
-    if (!HAS(EFFECT_MEDIUM) || medium == MEDIUM_VACUUM) return vec3(1.0f);
-    vec3 depth = vec3(media[medium].sigma_a) * distance;
-    return vec3(exp_of(-depth.x), exp_of(-depth.y), exp_of(-depth.z));
+FN Spectrum medium_transmittance(uint medium, float distance) {
+    if (!HAS(EFFECT_MEDIUM) || medium == MEDIUM_VACUUM) return Spectrum(1.0f);
+    return exp_of_minus(spectrum_of(media[medium].sigma_a) * distance);
 }
 
 // The medium that a geometry has on the side of its normal ng that the direction points to.

@@ -80,9 +80,9 @@ FN float ggx_missing_energy(float mu, float alpha) {
 
 // Factor that gives a conductor of normal reflectance f0 the energy of multiple scattering back: 1 + f0 (1 - E) / E
 // (Turquin 2019, "Practical multiple scattering compensation for microfacet models", equation 16).
-FN vec3 ggx_energy_compensation(vec3 f0, float mu, vec2 alpha) {
+FN Spectrum ggx_energy_compensation(Spectrum f0, float mu, vec2 alpha) {
     float missing = ggx_missing_energy(mu, sqrt(alpha.x * alpha.y));
-    return vec3(1.0f) + f0 * (missing / (1.0f - missing));
+    return Spectrum(1.0f) + f0 * (missing / (1.0f - missing));
 }
 
 #endif

@@ -6,6 +6,7 @@
 #include "core/kernel/layout.h"
 #include "core/kernel/photon_layout.h"
 #include "core/kernel/math.h"
+#include "core/kernel/spectrum.h"
 #include "core/kernel/random.h"
 
 // Octahedral map (Meyer et al. 2010), 16 bits a coordinate: the direction that comes back is off by less than 7e-5 radian,
@@ -35,11 +36,11 @@ FN vec3 direction_unpack(uint bits) {
     return unit(vec3(x, y, z));
 }
 
-FN PhotonRecord photon_pack(vec3 position, vec3 direction, vec3 power, uint key) {
+FN PhotonRecord photon_pack(vec3 position, vec3 direction, Spectrum power, uint key) {
     PhotonRecord p;
     p.place = uvec4(floatBitsToUint(position.x), floatBitsToUint(position.y), floatBitsToUint(position.z), key);
     p.flux =
-        uvec4(direction_pack(direction), floatBitsToUint(power.x), floatBitsToUint(power.y), floatBitsToUint(power.z));
+        uvec4(direction_pack(direction), floatBitsToUint(power[0]), floatBitsToUint(power[1]), floatBitsToUint(power[2]));
     return p;
 }
 // Of photon number `number` of a path: unique as long as (number + 1) * paths <= 2^32.
@@ -49,8 +50,8 @@ FN vec3 place_position(uvec4 place) {
 }
 FN vec3 photon_position(IN(PhotonRecord) p) { return place_position(p.place); }
 FN vec3 photon_direction(IN(PhotonRecord) p) { return direction_unpack(p.flux.x); }  // of flight: towards the surface
-FN vec3 photon_power(IN(PhotonRecord) p) {
-    return vec3(uintBitsToFloat(p.flux.y), uintBitsToFloat(p.flux.z), uintBitsToFloat(p.flux.w));
+FN Spectrum photon_power(IN(PhotonRecord) p) {
+    return Spectrum(uintBitsToFloat(p.flux.y), uintBitsToFloat(p.flux.z), uintBitsToFloat(p.flux.w));
 }
 
 // In range is this and nothing else, for every structure. A radius below 3e-19 is that: smaller squares underflow, which not every

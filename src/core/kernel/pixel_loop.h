@@ -12,7 +12,7 @@ KERNEL(pixel_loop) {
     for (; i < w.samples; ++i) {
         CameraSample camera = camera_sample(w, local, i);
         FirstHit first = no_first_hit();
-        vec3 radiance = radiance_along(camera.ray, camera.numbers, first);
+        Spectrum radiance = radiance_along(camera.ray, camera.numbers, first);
         film_add_first_hit(pixel, first);
         film_add(pixel, film_sensor(radiance), camera.weight, camera.pass);
     }

@@ -7,6 +7,8 @@
 #define LAMPYRIS_KERNEL_PRELUDE
 
 #ifdef __cplusplus
+// Spectrum (core/spectrum.h) has three values, or four in a kernel that defines SPECTRUM_OF_FOUR before it includes anything.
+#define SPECTRUM_TYPE(size) using Spectrum = SpectrumOf<size>;
 // Parameters of functions: IN for structs that are only read, OUT and INOUT for results. Pass vectors and scalars by value.
 #define IN(T) const T&
 #define OUT(T) T&
@@ -60,6 +62,12 @@ CONST bool DRIVERS_END_LOOPS = false;
 #define OUT(T) out T
 #define INOUT(T) inout T
 #define CONST const
+#define SPECTRUM_TYPE(size)
+#ifdef SPECTRUM_OF_FOUR
+#define Spectrum vec4
+#else
+#define Spectrum vec3
+#endif
 #define FN
 #define RARE_FN
 #define RARELY(condition) (condition)

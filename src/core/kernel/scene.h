@@ -11,6 +11,7 @@
 #include "core/kernel/bindings.h"
 #include "core/kernel/surface.h"
 #include "core/kernel/math.h"
+#include "core/kernel/spectrum.h"
 #include "core/kernel/random.h"
 #include "core/kernel/sampling.h"
 #include "core/kernel/texture.h"

@@ -21,7 +21,7 @@
 
 struct Walk {
     Ray ray;          // leaves the last vertex, or the last surface that let it pass
-    vec3 throughput;  // radiance: the weight of what arrives along the ray; importance: the power that it carries
+    Spectrum throughput;  // radiance: the weight of what arrives along the ray; importance: the power that it carries
     float eta_scale;  // undoes the scaling of radiance on refraction: roulette must not see it
     uint transport;   // TRANSPORT_*: radiance flows against the ray, importance along it
     uint medium;      // that the ray is in
@@ -76,7 +76,7 @@ FN void walk_goes_on(IN(Walk) w) {
 FN Walk walk_begin(IN(Ray) ray, uint medium, uint transport, int maxdepth) {
     Walk w;
     w.ray = ray;
-    w.throughput = vec3(1.0f);
+    w.throughput = Spectrum(1.0f);
     w.eta_scale = 1.0f;
     w.transport = transport;
     w.medium = medium;
@@ -142,12 +142,12 @@ FN Vertex vertex_at(INOUT(Surface) s, vec3 direction) {
 FN Vertex walk_vertex(IN(Walk) w, INOUT(Surface) s) { return vertex_at(s, w.ray.direction); }
 
 // What a sampled direction does to the throughput: the BSDF over its density, times what shading normals ask of the transport.
-FN vec3 vertex_weight(IN(Walk) w, IN(Surface) s, IN(Vertex) v, IN(BsdfSample) next, vec3 onward) {
+FN Spectrum vertex_weight(IN(Walk) w, IN(Surface) s, IN(Vertex) v, IN(BsdfSample) next, vec3 onward) {
     if (w.transport == TRANSPORT_RADIANCE) return next.f * (abs(next.wi.z) / next.pdf);
     // Shading normals are not symmetric (Veach 1997, equation 5.19): |wi.Ns wo.Ng| / (|wi.Ng| |wo.Ns|), of which |wo.Ns|
     // cancels the cosine of the weight. wi is towards the light, wo onward.
     float towards = abs_dot(w.ray.direction, s.ng);
-    return towards > 0.0f ? next.f * (abs(v.wo.z) * abs_dot(onward, s.ng) / (towards * next.pdf)) : vec3(0.0f);
+    return towards > 0.0f ? next.f * (abs(v.wo.z) * abs_dot(onward, s.ng) / (towards * next.pdf)) : Spectrum(0.0f);
 }
 
 // Goes on from s in a sampled direction, unless Russian roulette ends the walk, which it may after `rrdepth` vertices; it takes
@@ -156,10 +156,10 @@ FN vec3 vertex_weight(IN(Walk) w, IN(Surface) s, IN(Vertex) v, IN(BsdfSample) ne
 FN bool walk_leave(INOUT(Walk) w, IN(Surface) s, IN(Vertex) v, IN(BsdfSample) next, int rrdepth, IN(Sampler) numbers,
                    uint dimension) {
     vec3 onward = unit(to_world(v.frame, next.wi));
-    float before = max_component(w.throughput);
+    float before = max_value(w.throughput);
     w.throughput *= vertex_weight(w, s, v, next, onward);
     if ((next.lobe & LOBE_TRANSMISSION) != 0u) w.eta_scale *= sqr(next.eta);
-    float after = max_component(w.throughput);
+    float after = max_value(w.throughput);
     float survival = w.transport == TRANSPORT_RADIANCE ? after * w.eta_scale : after / before;
     w.depth += 1;
     if (!(survival > 0.0f) || w.depth > w.maxdepth) return false;

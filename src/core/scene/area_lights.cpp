@@ -48,7 +48,7 @@ void build_diffuse(AreaLightContext& context) {
     const std::string filename = reader.get_string("filename");
     if (!filename.empty()) {
         if (reader.has("L")) reader.error("L", "both \"L\" and \"filename\" are given", "one of them");
-        light.radiance = glm::vec3(scale);
+        light.radiance = Spectrum(scale);
         light.texture = context.build.textures.image_program(filename, glm::vec3(1.0f), reader.location("filename"));
         if (light.texture != kNone)
             light.texture_average =
@@ -57,7 +57,7 @@ void build_diffuse(AreaLightContext& context) {
         context.build.ask(kernel::EFFECT_LIGHT_TEXTURES, light.asked_by);
         reader.find("L");
     } else {
-        light.radiance = scale * read_spectrum(context.build, reader, "L", SpectrumUse::kLight, glm::vec3(1.0f));
+        light.radiance = scale * read_spectrum(context.build, reader, "L", SpectrumUse::kLight, Spectrum(1.0f));
     }
     context.build.ask(kernel::EFFECT_AREA_LIGHTS, light.asked_by);
 }
@@ -122,11 +122,11 @@ void add_area_light(ShapeContext& context, kernel::LightRecord record, uint32_t 
                     float area, float nominal_area) {
     const AreaLight& light = *context.area_light;
     const float sides = light.two_sided ? 2.0f : 1.0f;
-    glm::vec3 radiance = light.radiance;
+    Spectrum radiance = light.radiance;
     // pbrt-v4, lights.cpp, DiffuseAreaLight::Create.
     if (light.power > 0.0f) {
         const float emitted = light.power_luminance * sides * nominal_area * std::numbers::pi_v<float>;
-        radiance = emitted > 0.0f ? radiance * (light.power / emitted) : glm::vec3(0.0f);
+        radiance = emitted > 0.0f ? radiance * (light.power / emitted) : Spectrum(0.0f);
     }
     record.data.y = light.two_sided ? kernel::LIGHT_TWO_SIDED : 0u;
     const kernel::GeometryRecord& shape = context.build.scene.geometries[geometry];
@@ -134,9 +134,9 @@ void add_area_light(ShapeContext& context, kernel::LightRecord record, uint32_t 
     record.data.z = light.texture;
     record.data.w = kernel::NONE;
     record.ids.x = geometry, record.ids.y = primitive;
-    record.emission = {radiance, 0.0f};
+    record.emission = slot_of(radiance, 0.0f);
     const glm::dvec3 average =
-        glm::dvec3(radiance) * (light.texture == kNone ? glm::dvec3(1.0) : glm::dvec3(light.texture_average));
+        glm::dvec3(rgb_of(radiance)) * (light.texture == kNone ? glm::dvec3(1.0) : glm::dvec3(light.texture_average));
     context.build.lights.push_back(
         {record, luminance_of(average) * sides * area * std::numbers::pi, false, context.shape.location});
     if (record.data.x == kernel::LIGHT_GEOMETRY) context.build.ask(kernel::EFFECT_QUADRIC_LIGHTS, light.asked_by);

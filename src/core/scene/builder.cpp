@@ -54,14 +54,13 @@ void BuildContext::refuse_motion(const AnimatedTransform& transform, Location wh
                                 "without it, the transform at the start holds");
 }
 
-glm::vec3 read_spectrum(BuildContext& context, ParameterReader& reader, std::string_view name, SpectrumUse use,
-                        glm::vec3 default_value) {
-    const Parameter* parameter = reader.find(name);
-    if (!parameter) return default_value;
-    return spectrum_rgb(*parameter, use, context.description.directory, context.diagnostics).value_or(default_value);
-}
-
 namespace {
+
+Spectrum value_of(BuildContext& context, const Parameter& parameter, SpectrumUse use, Spectrum default_value) {
+    const std::optional<glm::vec3> rgb =
+        spectrum_rgb(parameter, use, context.description.directory, context.diagnostics);
+    return rgb ? spectrum_of_rgb(*rgb) : default_value;
+}
 
 // The name of the texture that a parameter refers to, or nothing.
 const std::string* texture_name(const Parameter& parameter, BuildContext& context) {
@@ -79,8 +78,14 @@ const std::string* texture_name(const Parameter& parameter, BuildContext& contex
 
 }  // namespace
 
+Spectrum read_spectrum(BuildContext& context, ParameterReader& reader, std::string_view name, SpectrumUse use,
+                       Spectrum default_value) {
+    const Parameter* parameter = reader.find(name);
+    return parameter ? value_of(context, *parameter, use, default_value) : default_value;
+}
+
 ColorSlot read_color(BuildContext& context, ParameterReader& reader, std::string_view name, SpectrumUse use,
-                     glm::vec3 default_value) {
+                     Spectrum default_value) {
     ColorSlot slot;
     slot.value = default_value;
     const Parameter* parameter = reader.find(name);
@@ -90,8 +95,7 @@ ColorSlot read_color(BuildContext& context, ParameterReader& reader, std::string
         if (const std::string* texture = texture_name(*parameter, context))
             slot.texture = context.textures.color_program(*texture, parameter->value_location);
     } else {
-        slot.value =
-            spectrum_rgb(*parameter, use, context.description.directory, context.diagnostics).value_or(default_value);
+        slot.value = value_of(context, *parameter, use, default_value);
     }
     return slot;
 }

@@ -34,7 +34,7 @@ struct Asker {
 struct AreaLight {
     bool valid = false;
     bool two_sided = false;
-    glm::vec3 radiance{0.0f};
+    Spectrum radiance{0.0f};
     uint32_t texture = kNone;         // emission program, in place of `radiance`
     glm::vec3 texture_average{0.0f};  // radiance on average, for choosing lights
     float power = 0.0f;               // wanted, in the units of the scene; 0: none
@@ -103,10 +103,10 @@ bool swaps_handedness(const glm::mat4& m);
 // ---- Values that a texture may stand in for --------------------------------------------------------------------------
 
 struct ColorSlot {
-    glm::vec3 value{0.0f};
+    Spectrum value{0.0f};
     uint32_t texture = kNone;
     bool given = false;
-    bool is_black() const { return texture == kNone && value == glm::vec3(0.0f); }
+    bool is_black() const { return texture == kNone && value == Spectrum(0.0f); }
 };
 struct FloatSlot {
     float value = 0.0f;
@@ -114,11 +114,11 @@ struct FloatSlot {
     bool given = false;
 };
 ColorSlot read_color(BuildContext& context, ParameterReader& reader, std::string_view name, SpectrumUse use,
-                     glm::vec3 default_value);
+                     Spectrum default_value);
 FloatSlot read_float(BuildContext& context, ParameterReader& reader, std::string_view name);
 // One spectrum, without textures; `default_value` where it is absent or wrong.
-glm::vec3 read_spectrum(BuildContext& context, ParameterReader& reader, std::string_view name, SpectrumUse use,
-                        glm::vec3 default_value);
+Spectrum read_spectrum(BuildContext& context, ParameterReader& reader, std::string_view name, SpectrumUse use,
+                       Spectrum default_value);
 
 // ---- Plugins ---------------------------------------------------------------------------------------------------------
 

@@ -5,10 +5,10 @@
 
 BUFFER_RO(1, AoParams, params)
 
-FN vec3 radiance_along(IN(Ray) ray, INOUT(Sampler) numbers, INOUT(FirstHit) first) {
+FN Spectrum radiance_along(IN(Ray) ray, INOUT(Sampler) numbers, INOUT(FirstHit) first) {
     Surface s;
-    if (!intersect_scene(ray, s)) return vec3(0.0f);
-    first = first_hit(s, vec3(0.0f), s.distance);
+    if (!intersect_scene(ray, s)) return Spectrum(0.0f);
+    first = first_hit(s, Spectrum(0.0f), s.distance);
     Frame frame = frame_from_z(face_forward(s.ng, -ray.direction));
     float limit = min(params[0].distance, INFINITE_DISTANCE);
     float seen = 0.0f;
@@ -18,5 +18,5 @@ FN vec3 radiance_along(IN(Ray) ray, INOUT(Sampler) numbers, INOUT(FirstHit) firs
         seen += scene_openness(s, direction, limit);
     }
     if (k != params[0].rays) REPORT_UNFINISHED();
-    return vec3(seen / float(params[0].rays));
+    return Spectrum(seen / float(params[0].rays));
 }

@@ -17,16 +17,16 @@ CONST uint PATH_LOBE = 5u;
 CONST uint PATH_ROULETTE = 6u;
 CONST uint PATH_VERTEX_DIMENSIONS = 8u;
 
-FN vec3 radiance_along(IN(Ray) ray, INOUT(Sampler) numbers, INOUT(FirstHit) first) {
+FN Spectrum radiance_along(IN(Ray) ray, INOUT(Sampler) numbers, INOUT(FirstHit) first) {
     Walk walk = walk_begin(ray, camera_medium(), TRANSPORT_RADIANCE, params[0].maxdepth);
-    vec3 radiance = vec3(0.0f);
+    Spectrum radiance = Spectrum(0.0f);
     vec3 previous = ray.origin;        // the vertex before, where lights were sampled
     float bsdf_density = 0.0f;         // pdf (solid angle) with which the ray's direction was sampled
     bool lights_were_sampled = false;  // so that what the ray finds by chance shares its weight
     Surface s;
     while (walk_next(walk, s)) {
         vec3 direction = walk.ray.direction;
-        vec3 emitted = light_emission(s, -direction);
+        Spectrum emitted = light_emission(s, -direction);
         if (!is_black(emitted)) {
             float weight =
                 lights_were_sampled ? power_heuristic(bsdf_density, light_pdf(s, previous, direction)) : 1.0f;
@@ -56,7 +56,7 @@ FN vec3 radiance_along(IN(Ray) ray, INOUT(Sampler) numbers, INOUT(FirstHit) firs
         if (!walk_leave(walk, s, v, next, params[0].rrdepth, numbers, dimension + PATH_ROULETTE)) break;
     }
     if (HAS(EFFECT_ENVIRONMENT) && walk.escaped) {
-        vec3 emitted = environment_radiance(walk.ray.direction);
+        Spectrum emitted = environment_radiance(walk.ray.direction);
         if (!is_black(emitted)) {
             float weight =
                 lights_were_sampled ? power_heuristic(bsdf_density, environment_pdf(walk.ray.direction)) : 1.0f;

@@ -16,7 +16,7 @@ KERNEL(photon_map_add) {
     float radius = queries[index].w;
     if (radius < 0.0f) return;
     float share = 1.0f / (PI * max(radius * radius, SMALLEST_RADIUS_SQUARED) * float(params[0].gather));
-    vec3 arriving = vec3(ends[index].throughput) * vec3(gathered[index]) * share;
-    vec3 radiance = vec3(hits[index].throughput) * arriving;
-    hits[index].radiance += vec4(radiance.x, radiance.y, radiance.z, 0.0f);
+    Spectrum arriving = spectrum_of(ends[index].throughput) * spectrum_of(gathered[index]) * share;
+    Spectrum radiance = spectrum_of(hits[index].throughput) * arriving;
+    hits[index].radiance += slot_of(radiance, 0.0f);
 }

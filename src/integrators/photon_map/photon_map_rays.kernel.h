@@ -38,7 +38,7 @@ KERNEL(photon_map_rays) {
         if (eye_path_scatters(s, v, numbers, EYE_LOBES_OTHER, path.walk)) {
             FirstHit unseen = no_first_hit();
             follow_eye_path(numbers, false, EYE_BRANCH_CHANCE, path, unseen, end, query);
-            end.throughput = vec4(path.walk.throughput.x, path.walk.throughput.y, path.walk.throughput.z, 1.0f);
+            end.throughput = slot_of(path.walk.throughput, 1.0f);
             film[index].counts.y += traced_rays[0];
         }
     }

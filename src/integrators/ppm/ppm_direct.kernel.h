@@ -42,9 +42,9 @@ KERNEL(ppm_direct) {
         v.bsdf.walk = hash_combine(numbers.key, numbers.index);
         uint u_light = 0u;
         if (light_choice_needs_number()) u_light = sample_bits_1d_at(numbers, 0u);
-        vec3 arriving = direct_light(s, v, hit_medium(hit), u_light, sample_bits_2d_at(numbers, 1u), false);
-        vec3 radiance = vec3(ways[at]) + vec3(hit.throughput) * arriving;
-        hits[at].radiance = vec4(radiance.x, radiance.y, radiance.z, hit.radiance.w);
+        Spectrum arriving = direct_light(s, v, hit_medium(hit), u_light, sample_bits_2d_at(numbers, 1u), false);
+        Spectrum radiance = spectrum_of(ways[at]) + spectrum_of(hit.throughput) * arriving;
+        hits[at].radiance = slot_of(radiance, hit.radiance.w);
     }
     if (i != w.samples) REPORT_UNFINISHED();
     film[index].counts.y += traced_rays[0];

@@ -23,7 +23,7 @@ CONST uint EYE_BRANCH_FOLLOWS = 2u;  // follows the coat's reflection, and has n
 struct EyePath {
     Walk walk;
     vec3 start;
-    vec3 radiance;    // found on the way
+    Spectrum radiance;    // found on the way
     float travelled;  // length so far, in scene units
 };
 
@@ -31,7 +31,7 @@ FN EyePath eye_path_begin(IN(Ray) ray, uint medium) {
     EyePath path;
     path.walk = walk_begin(ray, medium, TRANSPORT_RADIANCE, params[0].maxdepth);
     path.start = ray.origin;
-    path.radiance = vec3(0.0f);
+    path.radiance = Spectrum(0.0f);
     path.travelled = 0.0f;
     return path;
 }
@@ -116,7 +116,7 @@ FN void follow_eye_path(IN(Sampler) numbers, bool from_camera, uint branch_asked
             lobes = EYE_LOBES_SPECULAR;  // the rest is gathered, half of the time
         } else if (action == VISIBLE_SPLIT) {
             action = branch == EYE_BRANCH_GATHERS ? VISIBLE_GATHER : VISIBLE_FOLLOW;
-            if (action == VISIBLE_FOLLOW) path.radiance = vec3(0.0f);  // the other branch has it
+            if (action == VISIBLE_FOLLOW) path.radiance = Spectrum(0.0f);  // the other branch has it
             lobes = EYE_LOBES_COAT;
             branch = EYE_BRANCH_CHANCE;
         }
@@ -134,10 +134,8 @@ FN void follow_eye_path(IN(Sampler) numbers, bool from_camera, uint branch_asked
     }
     if (HAS(EFFECT_ENVIRONMENT) && from_camera && path.walk.escaped)
         path.radiance += path.walk.throughput * environment_radiance(path.walk.ray.direction);
-    if (branch == EYE_BRANCH_FOLLOWS) path.radiance = vec3(0.0f);  // it met no coat
-    hit.radiance.x = path.radiance.x;
-    hit.radiance.y = path.radiance.y;
-    hit.radiance.z = path.radiance.z;
+    if (branch == EYE_BRANCH_FOLLOWS) path.radiance = Spectrum(0.0f);  // it met no coat
+    hit.radiance = slot_of(path.radiance, hit.radiance.w);
 }
 
 #endif

@@ -50,10 +50,10 @@ FN vec4 hit_point_reflects(IN(HitPoint) p, IN(PhotonRecord) photon, float weight
     float cosine = dot3(incident, p.ng);
     if (!hit_point_sees(p, cosine)) return vec4(0.0f);
     vec3 wi = to_local(p.vertex.frame, incident);
-    vec3 f = bsdf_eval(p.vertex.bsdf, p.vertex.wo, wi, TRANSPORT_RADIANCE);
+    Spectrum f = bsdf_eval(p.vertex.bsdf, p.vertex.wo, wi, TRANSPORT_RADIANCE);
     // Photons are counted on the geometric surface, the BSDF wants the shading normal's cosine (clamped where grazing).
-    vec3 value = f * photon_power(photon) * (weight * abs(wi.z) / max(abs(cosine), GRAZING_COSINE));
-    return vec4(value.x, value.y, value.z, weight);
+    Spectrum value = f * photon_power(photon) * (weight * abs(wi.z) / max(abs(cosine), GRAZING_COSINE));
+    return slot_of(value, weight);
 }
 
 #endif

@@ -15,7 +15,7 @@ struct Gathered {
     HitPoint point;
     float over_radius_squared;
     vec4 sum;   // BSDF times power; w: photons
-    vec3 bias;  // what of the sum the radius has brought in: see gather_add
+    Spectrum bias;  // what of the sum the radius has brought in: see gather_add
 };
 
 FN Gathered gather_begin(uint query) {
@@ -24,7 +24,7 @@ FN Gathered gather_begin(uint query) {
     float radius = queries[query].w;
     g.over_radius_squared = 1.0f / max(radius * radius, SMALLEST_RADIUS_SQUARED);
     g.sum = vec4(0.0f);
-    g.bias = vec3(0.0f);
+    g.bias = Spectrum(0.0f);
     return g;
 }
 
@@ -35,7 +35,7 @@ FN void gather_add(INOUT(Gathered) g, uint query, IN(PhotonRecord) photon, float
     // estimated by the Laplacian of the kernel 4 (1 - t)^3 / (pi r^2), t = d^2 / r^2: as a share of what the disk's own
     // kernel 1 / (pi r^2) counts, a photon has the weight 6 (1 - t) (3 t - 1).
     float t = distance_squared * g.over_radius_squared;
-    g.bias += vec3(value) * (6.0f * (1.0f - t) * (3.0f * t - 1.0f));
+    g.bias += spectrum_of(value) * (6.0f * (1.0f - t) * (3.0f * t - 1.0f));
 }
 
 // For structures over the hit points: the surface is found again for each photon, and the bias is not estimated.
@@ -48,11 +48,11 @@ FN Gathered gather_sums(uint query, vec4 sums) {
     g.point = no_hit_point();
     g.over_radius_squared = 0.0f;
     g.sum = sums;
-    g.bias = vec3(0.0f);
+    g.bias = Spectrum(0.0f);
     return g;
 }
 
 FN void gather_end(IN(Gathered) g, uint query) {
     gathered[query] += g.sum;
-    biases[query] += vec4(g.bias.x, g.bias.y, g.bias.z, 0.0f);
+    biases[query] += slot_of(g.bias, 0.0f);
 }

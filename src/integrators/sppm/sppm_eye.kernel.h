@@ -31,7 +31,7 @@ KERNEL(sppm_eye) {
         uint branch = EYE_BRANCH_CHANCE;
         if (branches == 2u) branch = i % 2u == 0u ? EYE_BRANCH_GATHERS : EYE_BRANCH_FOLLOWS;
         follow_eye_path(camera.numbers, true, branch, path, first, hit, query);
-        hit.throughput = vec4(path.walk.throughput.x, path.walk.throughput.y, path.walk.throughput.z, camera.weight);
+        hit.throughput = slot_of(path.walk.throughput, camera.weight);
         film_add_first_hit(pixel, first);
         hits[at] = hit;
         queries[at] = query;

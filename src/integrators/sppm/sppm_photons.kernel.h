@@ -27,7 +27,7 @@ FN bool in_box(vec3 p, vec4 low, vec4 high) {
     return p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y && p.z <= high.z;
 }
 
-FN void keep_photon(vec3 position, vec3 direction, vec3 power, uint key) {
+FN void keep_photon(vec3 position, vec3 direction, Spectrum power, uint key) {
     uint at = ATOMIC_ADD_U32(counters[SPPM_STORED], 1u);
     if (at < passes[0].capacity) photons[at] = photon_pack(position, direction, power, key);
 }

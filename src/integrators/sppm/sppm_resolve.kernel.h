@@ -31,27 +31,27 @@ KERNEL(sppm_resolve) {
     uint i = 0u;
     uint branches = passes[0].branches;
     uint count = w.samples * branches;
-    vec3 radiance = vec3(0.0f);
-    vec3 bias = vec3(0.0f);
+    Spectrum radiance = Spectrum(0.0f);
+    Spectrum bias = Spectrum(0.0f);
     for (; i < count; ++i) {
         uint at = ((w.first_sample * branches + i) % passes[0].points) * pixels + index;
         SppmHit hit = hits[at];
-        radiance += vec3(hit.radiance);
+        radiance += spectrum_of(hit.radiance);
         vec4 q = queries[at];
         if (q.w >= 0.0f) {
             vec4 sum = gathered[at];
             // Summing flux over area pass by pass is the shared-statistics estimate tau / (pi R^2), without its rescaling:
             // tau_n / R_n^2 = sum of Phi_i / R_i^2.
-            vec3 share = vec3(hit.throughput) * (1.0f / (PI * max(q.w * q.w, SMALLEST_RADIUS_SQUARED)));
-            radiance += share * vec3(sum);
-            bias += share * vec3(biases[at]);
+            Spectrum share = spectrum_of(hit.throughput) * (1.0f / (PI * max(q.w * q.w, SMALLEST_RADIUS_SQUARED)));
+            radiance += share * spectrum_of(sum);
+            bias += share * spectrum_of(biases[at]);
             statistics[at] = shrink(statistics[at], sum.w);
         }
         if ((i + 1u) % branches != 0u) continue;  // the branches of a path are one sample
         if (film_add(pixel, film_sensor(radiance), hit_filter_weight(hit), passes[0].number))
-            film_add_bias(film_bias[index], bias * scene[0].camera.lens.w, hit_filter_weight(hit));
-        radiance = vec3(0.0f);
-        bias = vec3(0.0f);
+            film_add_bias(film_bias[index], rgb_of(bias) * scene[0].camera.lens.w, hit_filter_weight(hit));
+        radiance = Spectrum(0.0f);
+        bias = Spectrum(0.0f);
     }
     if (i != count) REPORT_UNFINISHED();
     film[index] = pixel;

@@ -8,8 +8,8 @@
 FN Bsdf coatedconductor_make(IN(MaterialRecord) m) {
     Bsdf b = coat_make(m, roughness_alpha(m.floats2.y, m.floats2.z, (m.data.y & MATERIAL_REMAP_COAT) != 0u));
     b.flags = m.data.y;
-    vec3 n;
-    vec3 k;
+    Spectrum n;
+    Spectrum k;
     conductor_index(m, n, k);
     b.color0 = bounded_index(n / b.eta);
     b.color1 = bounded_index(k / b.eta);
@@ -21,9 +21,9 @@ FN bool coatedconductor_is_specular(IN(Bsdf) b) { return coat_is_specular(b) && 
 FN bool coatedconductor_chooses_lobe(IN(Bsdf) b) { return true; }
 FN bool coatedconductor_transmits(IN(Bsdf) b) { return false; }
 
-FN vec3 coatedconductor_albedo(IN(Bsdf) b) {
+FN Spectrum coatedconductor_albedo(IN(Bsdf) b) {
     float r = fresnel_dielectric(1.0f, b.eta);
-    return r + (1.0f - r) * (1.0f - r) * fresnel_conductor(1.0f, b.color0, b.color1);
+    return Spectrum(r) + (1.0f - r) * (1.0f - r) * fresnel_conductor(1.0f, b.color0, b.color1);
 }
 
 FN uint coatedconductor_visible_action(IN(Bsdf) b, float roughness) {

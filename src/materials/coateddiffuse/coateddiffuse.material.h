@@ -7,7 +7,7 @@
 FN Bsdf coateddiffuse_make(IN(MaterialRecord) m) {
     Bsdf b = coat_make(m, record_roughness(m));
     b.flags = m.data.y;
-    b.color0 = bounded_share(vec3(m.color0));
+    b.color0 = bounded_share(spectrum_of(m.color0));
     if (clear_coat_applies(b)) b.inner = clear_coat_inner_reflectance(b.eta, b.thickness);
     return b;
 }
@@ -17,11 +17,11 @@ FN bool coateddiffuse_chooses_lobe(IN(Bsdf) b) { return true; }
 FN bool coateddiffuse_transmits(IN(Bsdf) b) { return false; }
 
 // The coat's own reflection, and the base seen through it with a diffuse inner reflection of R_i = 1 - (1 - R) / eta^2.
-FN vec3 coateddiffuse_albedo(IN(Bsdf) b) {
+FN Spectrum coateddiffuse_albedo(IN(Bsdf) b) {
     float r = fresnel_dielectric(1.0f, b.eta);
-    vec3 base = b.color0;
+    Spectrum base = b.color0;
     float inner = max(1.0f - (1.0f - r) / (b.eta * b.eta), 0.0f);
-    return vec3(r) + (1.0f - r) * (1.0f - inner) * (base / (vec3(1.0f) - base * inner));
+    return Spectrum(r) + (1.0f - r) * (1.0f - inner) * (base / (Spectrum(1.0f) - base * inner));
 }
 
 FN uint coateddiffuse_visible_action(IN(Bsdf) b, float roughness) {

@@ -6,17 +6,17 @@
 // ---- The lobe, which is also the base of coatedconductor -------------------------------------------------------------
 
 // D F G2 / (4 cos_o cos_i), for wo.z and wi.z > 0, at the microfacet normal m.
-FN vec3 conductor_lobe_value(vec3 n, vec3 k, vec2 alpha, uint flags, vec3 wo, vec3 wi, vec3 m, float d) {
-    vec3 f = fresnel_conductor(max(dot3(wo, m), 0.0f), n, k) * (d * ggx_visibility(wo, wi, alpha));
+FN Spectrum conductor_lobe_value(Spectrum n, Spectrum k, vec2 alpha, uint flags, vec3 wo, vec3 wi, vec3 m, float d) {
+    Spectrum f = fresnel_conductor(max(dot3(wo, m), 0.0f), n, k) * (d * ggx_visibility(wo, wi, alpha));
     if ((flags & MATERIAL_ENERGY_COMPENSATION) != 0u) {
         f = f * ggx_energy_compensation(fresnel_conductor(1.0f, n, k), wo.z, alpha);
     }
     return f;
 }
 
-FN vec3 conductor_lobe_eval(vec3 n, vec3 k, vec2 alpha, uint flags, vec3 wo, vec3 wi, OUT(float) pdf) {
+FN Spectrum conductor_lobe_eval(Spectrum n, Spectrum k, vec2 alpha, uint flags, vec3 wo, vec3 wi, OUT(float) pdf) {
     pdf = 0.0f;
-    if (ggx_is_smooth(alpha) || !same_hemisphere(wo, wi)) return vec3(0.0f);
+    if (ggx_is_smooth(alpha) || !same_hemisphere(wo, wi)) return Spectrum(0.0f);
     vec3 o = wo.z < 0.0f ? -wo : wo;
     vec3 i = wo.z < 0.0f ? -wi : wi;
     vec3 m = unit(o + i);
@@ -26,7 +26,7 @@ FN vec3 conductor_lobe_eval(vec3 n, vec3 k, vec2 alpha, uint flags, vec3 wo, vec
     return conductor_lobe_value(n, k, alpha, flags, o, i, m, d);
 }
 
-FN bool conductor_lobe_sample(vec3 n, vec3 k, vec2 alpha, uint flags, vec3 wo, vec2 u, INOUT(BsdfSample) s) {
+FN bool conductor_lobe_sample(Spectrum n, Spectrum k, vec2 alpha, uint flags, vec3 wo, vec2 u, INOUT(BsdfSample) s) {
     if (ggx_is_smooth(alpha)) {
         float c = abs(wo.z);
         s.wi = vec3(-wo.x, -wo.y, wo.z);
@@ -48,19 +48,20 @@ FN bool conductor_lobe_sample(vec3 n, vec3 k, vec2 alpha, uint flags, vec3 wo, v
 }
 
 // k for which a conductor with n = 1 has the given normal reflectance (pbrt, 4th edition, section 9.3.6).
-FN vec3 conductor_k_of_reflectance(vec3 reflectance) {
-    vec3 r = vec3(clamp(reflectance.x, 0.0f, 0.9999f), clamp(reflectance.y, 0.0f, 0.9999f),
-                  clamp(reflectance.z, 0.0f, 0.9999f));
-    return vec3(2.0f * sqrt(r.x / (1.0f - r.x)), 2.0f * sqrt(r.y / (1.0f - r.y)), 2.0f * sqrt(r.z / (1.0f - r.z)));
+FN Spectrum conductor_k_of_reflectance(Spectrum reflectance) {
+    Spectrum r = clamp_each(reflectance, 0.0f, 0.9999f);
+#define INDEX_K(i) 2.0f * sqrt(r[i] / (1.0f - r[i]))
+    return SPECTRUM_EACH(INDEX_K);
+#undef INDEX_K
 }
 
 // n + ik of a record, relative to the outside.
-FN void conductor_index(IN(MaterialRecord) m, OUT(vec3) n, OUT(vec3) k) {
-    n = vec3(m.color0);
-    k = vec3(m.color1);
+FN void conductor_index(IN(MaterialRecord) m, OUT(Spectrum) n, OUT(Spectrum) k) {
+    n = spectrum_of(m.color0);
+    k = spectrum_of(m.color1);
     if ((m.data.y & MATERIAL_USES_REFLECTANCE) != 0u) {
         k = conductor_k_of_reflectance(n);
-        n = vec3(1.0f);
+        n = Spectrum(1.0f);
     }
 }
 
@@ -69,8 +70,8 @@ FN void conductor_index(IN(MaterialRecord) m, OUT(vec3) n, OUT(vec3) k) {
 FN Bsdf conductor_make(IN(MaterialRecord) m) {
     Bsdf b = no_bsdf();
     b.flags = m.data.y & MATERIAL_ENERGY_COMPENSATION;
-    vec3 n;
-    vec3 k;
+    Spectrum n;
+    Spectrum k;
     conductor_index(m, n, k);
     b.color0 = bounded_index(n);
     b.color1 = bounded_index(k);
@@ -81,14 +82,14 @@ FN Bsdf conductor_make(IN(MaterialRecord) m) {
 FN bool conductor_is_specular(IN(Bsdf) b) { return ggx_is_smooth(b.alpha); }
 FN bool conductor_chooses_lobe(IN(Bsdf) b) { return false; }
 FN bool conductor_transmits(IN(Bsdf) b) { return false; }
-FN vec3 conductor_albedo(IN(Bsdf) b) { return fresnel_conductor(1.0f, b.color0, b.color1); }
+FN Spectrum conductor_albedo(IN(Bsdf) b) { return fresnel_conductor(1.0f, b.color0, b.color1); }
 
 FN uint conductor_visible_action(IN(Bsdf) b, float roughness) {
     if (ggx_is_smooth(b.alpha)) return VISIBLE_FOLLOW;
     return max(b.alpha.x, b.alpha.y) < roughness ? VISIBLE_FOLLOW : VISIBLE_GATHER;
 }
 
-FN vec3 conductor_eval(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport, OUT(float) pdf) {
+FN Spectrum conductor_eval(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport, OUT(float) pdf) {
     return conductor_lobe_eval(b.color0, b.color1, b.alpha, b.flags, wo, wi, pdf);
 }
 

@@ -30,9 +30,9 @@ FN float rough_refraction_pdf(vec2 alpha, float eta, vec3 o, float d, float do_m
     return ggx_visible_scale(o, alpha) * d * abs(do_m * di_m) * eta * eta / length2;
 }
 
-FN vec3 dielectric_lobe_eval(vec2 alpha, float eta_up, vec3 wo, vec3 wi, uint transport, uint lobes, OUT(float) pdf) {
+FN Spectrum dielectric_lobe_eval(vec2 alpha, float eta_up, vec3 wo, vec3 wi, uint transport, uint lobes, OUT(float) pdf) {
     pdf = 0.0f;
-    if (dielectric_lobe_is_specular(alpha, eta_up)) return vec3(0.0f);
+    if (dielectric_lobe_is_specular(alpha, eta_up)) return Spectrum(0.0f);
     bool below = wo.z < 0.0f;
     vec3 o = below ? -wo : wo;
     vec3 i = below ? -wi : wi;
@@ -40,22 +40,22 @@ FN vec3 dielectric_lobe_eval(vec2 alpha, float eta_up, vec3 wo, vec3 wi, uint tr
     bool reflected = i.z > 0.0f;
     vec3 h = reflected ? o + i : o + eta * i;
     float length2 = length_squared(h);
-    if (!(length2 > 1e-20f)) return vec3(0.0f);
+    if (!(length2 > 1e-20f)) return Spectrum(0.0f);
     vec3 m = (h.z < 0.0f ? -1.0f : 1.0f) / sqrt(length2) * h;
     float do_m = dot3(o, m);
     float di_m = dot3(i, m);
     // Microfacets seen from behind scatter nothing.
-    if (!(do_m > 0.0f) || (di_m > 0.0f) != reflected) return vec3(0.0f);
+    if (!(do_m > 0.0f) || (di_m > 0.0f) != reflected) return Spectrum(0.0f);
     // The refracted cosine is known: near total reflection it is more accurate than what follows from the other.
     float r = reflected ? fresnel_dielectric(do_m, eta) : fresnel_of_cosines(do_m, -di_m, eta);
     float choice = dielectric_lobe_choice(r, lobes);
     float d = ggx_d(m, alpha);
     if (reflected) {
         pdf = max(choice, 0.0f) * 0.25f * ggx_visible_scale(o, alpha) * d;
-        return vec3(r * d * ggx_visibility(o, i, alpha));
+        return Spectrum(r * d * ggx_visibility(o, i, alpha));
     }
     if (choice >= 0.0f) pdf = (1.0f - choice) * rough_refraction_pdf(alpha, eta, o, d, do_m, di_m, length2);
-    return vec3((1.0f - r) * rough_refraction_value(alpha, eta, o, i, d, do_m, di_m, length2, transport));
+    return Spectrum((1.0f - r) * rough_refraction_value(alpha, eta, o, i, d, do_m, di_m, length2, transport));
 }
 
 FN bool dielectric_lobe_sample(vec2 alpha, float eta_up, vec3 wo, float uc, vec2 u, uint transport, uint lobes,
@@ -96,7 +96,7 @@ FN bool dielectric_lobe_sample(vec2 alpha, float eta_up, vec3 wo, float uc, vec2
             s.pdf *= rough_refraction_pdf(alpha, eta, o, d, do_m, di_m, length2);
         }
     }
-    s.f = vec3(value);
+    s.f = Spectrum(value);
     return s.pdf > 0.0f;
 }
 
@@ -112,14 +112,14 @@ FN Bsdf dielectric_make(IN(MaterialRecord) m) {
 FN bool dielectric_is_specular(IN(Bsdf) b) { return dielectric_lobe_is_specular(b.alpha, b.eta); }
 FN bool dielectric_chooses_lobe(IN(Bsdf) b) { return true; }
 FN bool dielectric_transmits(IN(Bsdf) b) { return true; }
-FN vec3 dielectric_albedo(IN(Bsdf) b) { return vec3(1.0f); }
+FN Spectrum dielectric_albedo(IN(Bsdf) b) { return Spectrum(1.0f); }
 
 FN uint dielectric_visible_action(IN(Bsdf) b, float roughness) {
     if (dielectric_is_specular(b)) return VISIBLE_FOLLOW;
     return max(b.alpha.x, b.alpha.y) < roughness ? VISIBLE_FOLLOW : VISIBLE_GATHER;
 }
 
-FN vec3 dielectric_eval(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport, OUT(float) pdf) {
+FN Spectrum dielectric_eval(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport, OUT(float) pdf) {
     return dielectric_lobe_eval(b.alpha, b.eta, wo, wi, transport, LOBE_BOTH_SIDES, pdf);
 }
 

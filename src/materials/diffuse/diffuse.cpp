@@ -9,7 +9,7 @@ void build(MaterialContext& context) {
     context.record.data.x = kernel::MATERIAL_DIFFUSE;
     context.record.floats2.w = kRoughestDiffuse;
     set_color0(context,
-               read_color(context.build, context.reader, "reflectance", SpectrumUse::kAlbedo, glm::vec3(0.5f)));
+               read_color(context.build, context.reader, "reflectance", SpectrumUse::kAlbedo, Spectrum(0.5f)));
     read_surface_detail(context);
 }
 

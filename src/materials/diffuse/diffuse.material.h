@@ -4,14 +4,14 @@
 
 // ---- The lobe, which is also the base of coateddiffuse ---------------------------------------------------------------
 
-FN vec3 diffuse_lobe_eval(vec3 reflectance, vec3 wo, vec3 wi, OUT(float) pdf) {
+FN Spectrum diffuse_lobe_eval(Spectrum reflectance, vec3 wo, vec3 wi, OUT(float) pdf) {
     pdf = 0.0f;
-    if (!same_hemisphere(wo, wi)) return vec3(0.0f);
+    if (!same_hemisphere(wo, wi)) return Spectrum(0.0f);
     pdf = pdf_cosine_hemisphere(abs(wi.z));
     return reflectance * INV_PI;
 }
 
-FN bool diffuse_lobe_sample(vec3 reflectance, vec3 wo, vec2 u, INOUT(BsdfSample) s) {
+FN bool diffuse_lobe_sample(Spectrum reflectance, vec3 wo, vec2 u, INOUT(BsdfSample) s) {
     vec3 wi = sample_cosine_hemisphere(u);
     s.pdf = pdf_cosine_hemisphere(wi.z);
     s.wi = wo.z < 0.0f ? vec3(wi.x, wi.y, -wi.z) : wi;
@@ -24,17 +24,17 @@ FN bool diffuse_lobe_sample(vec3 reflectance, vec3 wo, vec2 u, INOUT(BsdfSample)
 
 FN Bsdf diffuse_make(IN(MaterialRecord) m) {
     Bsdf b = no_bsdf();
-    b.color0 = bounded_share(vec3(m.color0));
+    b.color0 = bounded_share(spectrum_of(m.color0));
     return b;
 }
 
 FN bool diffuse_is_specular(IN(Bsdf) b) { return false; }
 FN bool diffuse_chooses_lobe(IN(Bsdf) b) { return false; }
 FN bool diffuse_transmits(IN(Bsdf) b) { return false; }
-FN vec3 diffuse_albedo(IN(Bsdf) b) { return b.color0; }
+FN Spectrum diffuse_albedo(IN(Bsdf) b) { return b.color0; }
 FN uint diffuse_visible_action(IN(Bsdf) b, float roughness) { return VISIBLE_GATHER; }
 
-FN vec3 diffuse_eval(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport, OUT(float) pdf) {
+FN Spectrum diffuse_eval(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport, OUT(float) pdf) {
     return diffuse_lobe_eval(b.color0, wo, wi, pdf);
 }
 

@@ -10,9 +10,9 @@ void build(MaterialContext& context) {
     context.record.floats2.w = kRoughestDiffuse;
     context.ask(kernel::EFFECT_DIFFUSE_TRANSMISSION);
     set_color0(context,
-               read_color(context.build, context.reader, "reflectance", SpectrumUse::kAlbedo, glm::vec3(0.25f)));
+               read_color(context.build, context.reader, "reflectance", SpectrumUse::kAlbedo, Spectrum(0.25f)));
     set_color1(context,
-               read_color(context.build, context.reader, "transmittance", SpectrumUse::kAlbedo, glm::vec3(0.25f)));
+               read_color(context.build, context.reader, "transmittance", SpectrumUse::kAlbedo, Spectrum(0.25f)));
     context.record.color0.w = context.reader.get_float("scale");
     read_surface_detail(context);
 }

@@ -4,25 +4,25 @@
 
 FN Bsdf diffusetransmission_make(IN(MaterialRecord) m) {
     Bsdf b = no_bsdf();
-    b.color0 = bounded_share(m.color0.w * vec3(m.color0));
-    b.color1 = bounded_share(m.color0.w * vec3(m.color1));
+    b.color0 = bounded_share(m.color0.w * spectrum_of(m.color0));
+    b.color1 = bounded_share(m.color0.w * spectrum_of(m.color1));
     return b;
 }
 
 FN bool diffusetransmission_is_specular(IN(Bsdf) b) { return false; }
 FN bool diffusetransmission_chooses_lobe(IN(Bsdf) b) { return true; }
 FN bool diffusetransmission_transmits(IN(Bsdf) b) { return true; }
-FN vec3 diffusetransmission_albedo(IN(Bsdf) b) { return bounded_share(b.color0 + b.color1); }
+FN Spectrum diffusetransmission_albedo(IN(Bsdf) b) { return bounded_share(b.color0 + b.color1); }
 FN uint diffusetransmission_visible_action(IN(Bsdf) b, float roughness) { return VISIBLE_GATHER; }
 
 // Probability of reflection rather than transmission: by the larger channel of each, as pbrt.
 FN float diffusetransmission_reflects(IN(Bsdf) b) {
-    float r = max_component(b.color0);
-    float t = max_component(b.color1);
+    float r = max_value(b.color0);
+    float t = max_value(b.color1);
     return r + t > 0.0f ? r / (r + t) : 1.0f;
 }
 
-FN vec3 diffusetransmission_eval(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport, OUT(float) pdf) {
+FN Spectrum diffusetransmission_eval(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport, OUT(float) pdf) {
     float p = diffusetransmission_reflects(b);
     bool reflected = same_hemisphere(wo, wi);
     pdf = pdf_cosine_hemisphere(abs(wi.z)) * (reflected ? p : 1.0f - p);

@@ -52,17 +52,19 @@ FN float clear_coat_transmission(IN(Bsdf) b, float cos_theta) {
     return (1.0f - fresnel_of_cosines(cos_theta, mu, b.eta)) * exp_of(-min(b.thickness / mu, 100.0f));
 }
 
-FN vec3 clear_coat_value(IN(Bsdf) b, float cos_o, float cos_i) {
+FN Spectrum clear_coat_value(IN(Bsdf) b, float cos_o, float cos_i) {
     uint count = (b.max_depth + 1u) / 2u;
-    vec3 x = b.color0 * b.inner;
-    vec3 series = vec3(geometric_sum(x.x, count), geometric_sum(x.y, count), geometric_sum(x.z, count));
+    Spectrum x = b.color0 * b.inner;
+#define SERIES(i) geometric_sum(x[i], count)
+    Spectrum series = SPECTRUM_EACH(SERIES);
+#undef SERIES
     float t = clear_coat_transmission(b, cos_o) * clear_coat_transmission(b, cos_i);
     return b.color0 * series * (t * INV_PI / (b.eta * b.eta));
 }
 
-FN vec3 clear_coat_eval(IN(Bsdf) b, vec3 wo, vec3 wi, OUT(float) pdf) {
+FN Spectrum clear_coat_eval(IN(Bsdf) b, vec3 wo, vec3 wi, OUT(float) pdf) {
     pdf = 0.0f;
-    if (!same_hemisphere(wo, wi)) return vec3(0.0f);
+    if (!same_hemisphere(wo, wi)) return Spectrum(0.0f);
     pdf = (1.0f - fresnel_dielectric(abs(wo.z), b.eta)) * pdf_cosine_hemisphere(abs(wi.z));
     return clear_coat_value(b, abs(wo.z), abs(wi.z));
 }
@@ -73,7 +75,7 @@ FN bool clear_coat_sample(IN(Bsdf) b, vec3 wo, float uc, vec2 u, INOUT(BsdfSampl
     float r = fresnel_dielectric(c, b.eta);
     if (uc < r) {
         s.wi = vec3(-wo.x, -wo.y, wo.z);
-        s.f = vec3(r / c);
+        s.f = Spectrum(r / c);
         s.pdf = r;
         s.lobe = LOBE_REFLECTION | LOBE_SPECULAR;
         return true;

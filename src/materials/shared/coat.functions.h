@@ -11,7 +11,7 @@ FN Bsdf coat_make(IN(MaterialRecord) m, vec2 alpha) {
     b.eta = bounded_eta(m.floats.z);
     b.alpha = ggx_alpha(alpha.x, alpha.y);
     b.thickness = clamp(m.floats2.x, 1e-20f, 1e20f);
-    b.albedo = bounded_share(vec3(m.color2));
+    b.albedo = bounded_share(spectrum_of(m.color2));
     b.g = clamp(m.floats.w, -0.99f, 0.99f);
     b.max_depth = m.extra.x;
     b.samples = max(m.extra.y, 1u);
@@ -21,11 +21,11 @@ FN Bsdf coat_make(IN(MaterialRecord) m, vec2 alpha) {
 // Whether the walk through a coat over a specular base has delta lobes alone.
 FN bool coat_is_specular(IN(Bsdf) b) { return dielectric_lobe_is_specular(b.alpha, b.eta) && is_black(b.albedo); }
 
-FN vec3 coat_eval(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport, uint jobs, OUT(float) pdf) {
+FN Spectrum coat_eval(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport, uint jobs, OUT(float) pdf) {
     if (RARELY(b.inner >= 0.0f)) return clear_coat_eval(b, wo, wi, pdf);
     Bsdf coated = b;
     BsdfSample none = no_bsdf_sample();
-    vec3 value;
+    Spectrum value;
     float density;
     layered_scatter(coated, wo, wi, 0.0f, vec2(0.0f), transport, jobs, none, value, density);
     pdf = density;
@@ -38,7 +38,7 @@ FN bool coat_sample(IN(Bsdf) b, vec3 wo, float uc, vec2 u, uint transport, uint 
     if (RARELY(b.inner >= 0.0f)) return clear_coat_sample(b, wo, uc, u, s);
     Bsdf coated = b;
     BsdfSample chosen = s;
-    vec3 value;
+    Spectrum value;
     float chosen_density;
     bool found =
         layered_scatter(coated, wo, wo, uc, u, transport, LAYERED_SAMPLE | jobs, chosen, value, chosen_density);

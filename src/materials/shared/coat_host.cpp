@@ -13,7 +13,7 @@ void read_coat(MaterialContext& context, const std::string& eta) {
     record.floats2.x = thickness.value;
     record.textures2.y = thickness.texture;
     record.floats.w = reader.get_float("g");
-    set_color2(context, read_color(context.build, reader, "albedo", SpectrumUse::kAlbedo, glm::vec3(0.0f)));
+    set_color2(context, read_color(context.build, reader, "albedo", SpectrumUse::kAlbedo, Spectrum(0.0f)));
     if (reader.get_bool("exactcoat")) record.data.y |= kernel::MATERIAL_EXACT_COAT;
     record.extra.x = uint32_t(reader.get_int("maxdepth"));
     record.extra.y = uint32_t(reader.get_int("nsamples"));

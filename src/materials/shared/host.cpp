@@ -110,15 +110,15 @@ float read_eta(MaterialContext& context, std::string_view name) {
 }
 
 void set_color0(MaterialContext& context, const ColorSlot& slot) {
-    context.record.color0 = {slot.value, context.record.color0.w};
+    context.record.color0 = slot_of(slot.value, context.record.color0.w);
     context.record.textures.x = slot.texture;
 }
 void set_color1(MaterialContext& context, const ColorSlot& slot) {
-    context.record.color1 = {slot.value, 0.0f};
+    context.record.color1 = slot_of(slot.value, 0.0f);
     context.record.textures.y = slot.texture;
 }
 void set_color2(MaterialContext& context, const ColorSlot& slot) {
-    context.record.color2 = {slot.value, 0.0f};
+    context.record.color2 = slot_of(slot.value, 0.0f);
     context.record.textures.z = slot.texture;
 }
 
@@ -146,7 +146,7 @@ void read_conductor(MaterialContext& context, const std::string& prefix) {
                          "one of them");
         reader.find(eta), reader.find(k);
         context.record.data.y |= kernel::MATERIAL_USES_REFLECTANCE;
-        set_color0(context, read_color(context.build, reader, "reflectance", SpectrumUse::kAlbedo, glm::vec3(0.5f)));
+        set_color0(context, read_color(context.build, reader, "reflectance", SpectrumUse::kAlbedo, Spectrum(0.5f)));
         return;
     }
     // Where both are spectra, their reflectance decides: a metal's colour is not that of its mean eta and k.
@@ -162,13 +162,13 @@ void read_conductor(MaterialContext& context, const std::string& prefix) {
                                          k_spectrum = sampled(k, "metal-Cu-k");
     if (eta_spectrum && k_spectrum) {
         const ConductorRgb rgb = conductor_rgb(*eta_spectrum, *k_spectrum);
-        set_color0(context, {rgb.eta, kNone, true});
-        set_color1(context, {rgb.k, kNone, true});
+        set_color0(context, {spectrum_of_rgb(rgb.eta), kNone, true});
+        set_color1(context, {spectrum_of_rgb(rgb.k), kNone, true});
         return;
     }
     static const ConductorRgb copper = conductor_rgb(*named_spectrum("metal-Cu-eta"), *named_spectrum("metal-Cu-k"));
-    set_color0(context, read_color(context.build, reader, eta, SpectrumUse::kUnbounded, copper.eta));
-    set_color1(context, read_color(context.build, reader, k, SpectrumUse::kUnbounded, copper.k));
+    set_color0(context, read_color(context.build, reader, eta, SpectrumUse::kUnbounded, spectrum_of_rgb(copper.eta)));
+    set_color1(context, read_color(context.build, reader, k, SpectrumUse::kUnbounded, spectrum_of_rgb(copper.k)));
 }
 
 }  // namespace lampyris

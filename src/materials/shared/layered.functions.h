@@ -16,7 +16,7 @@
 
 FN bool base_is_specular(IN(Bsdf) b) { return b.kind == MATERIAL_COATEDCONDUCTOR && ggx_is_smooth(b.alpha_base); }
 
-FN vec3 base_eval(IN(Bsdf) b, vec3 wo, vec3 wi, OUT(float) pdf) {
+FN Spectrum base_eval(IN(Bsdf) b, vec3 wo, vec3 wi, OUT(float) pdf) {
     if (b.kind == MATERIAL_COATEDDIFFUSE) return diffuse_lobe_eval(b.color0, wo, wi, pdf);
     return conductor_lobe_eval(b.color0, b.color1, b.alpha_base, b.flags, wo, wi, pdf);
 }
@@ -44,7 +44,7 @@ FN vec2 rng_float2(INOUT(Rng) rng) {
 FN float layer_transmittance(float dz, vec3 w) { return exp_of(-min(abs(dz) / max(abs(w.z), MIN_COSINE), 100.0f)); }
 
 // How far along w the walk is from height z when the medium scatters it: false if it reaches a boundary, at height z then.
-FN bool layer_advance(IN(Bsdf) b, bool has_medium, vec3 w, INOUT(float) z, INOUT(vec3) weight, INOUT(Rng) rng) {
+FN bool layer_advance(IN(Bsdf) b, bool has_medium, vec3 w, INOUT(float) z, INOUT(Spectrum) weight, INOUT(Rng) rng) {
     float target = w.z > 0.0f ? b.thickness : 0.0f;
     if (!has_medium) {
         weight = weight * layer_transmittance(b.thickness, w);
@@ -78,8 +78,8 @@ CONST uint LAYERED_DENSITY = 4u;
 // rough coat's values come out too bright: 8 % over a white diffuse base at alpha = 0.3. Images can only agree with pbrt's by doing
 // the same, so this is the default. (f is reciprocal between the transport modes: one evaluation serves either way.)
 RARE_FN bool layered_scatter(IN(Bsdf) b, vec3 wo_any, vec3 wi_any, float uc, vec2 u, uint transport, uint jobs,
-                             INOUT(BsdfSample) s, OUT(vec3) value, OUT(float) density) {
-    value = vec3(0.0f);
+                             INOUT(BsdfSample) s, OUT(Spectrum) value, OUT(float) density) {
+    value = Spectrum(0.0f);
     density = 0.0f;
     bool below = wo_any.z < 0.0f;
     vec3 wo = below ? -wo_any : wo_any;
@@ -106,23 +106,23 @@ RARE_FN bool layered_scatter(IN(Bsdf) b, vec3 wo_any, vec3 wi_any, float uc, vec
         uint entries = sampling ? 1u : 2u;
         uint steps = entries + (weighing ? 1u : b.max_depth);
         uint walks = sampling ? 1u : b.samples;
-        vec3 surface = vec3(0.0f);  // what the coat itself reflects; a density is the same number three times
-        vec3 sum = vec3(0.0f);
+        Spectrum surface = Spectrum(0.0f);  // what the coat itself reflects; a density is the same number three times
+        Spectrum sum = Spectrum(0.0f);
         for (uint walk = 0u; walk < walks; ++walk) {
-            vec3 beta = vec3(1.0f);
+            Spectrum beta = Spectrum(1.0f);
             vec3 w = wo;
             float z = b.thickness;
             bool specular = true;
             bool entered = true;
             vec3 exit_w = wi;  // wi, refracted in
-            vec3 exit_weight = vec3(0.0f);
+            Spectrum exit_weight = Spectrum(0.0f);
             float exit_pdf = 0.0f;
             for (uint step = 0u; step < steps; ++step) {
                 bool entering = step < entries;
                 bool at_coat = entering;
                 bool scattered = false;
                 if (!entering && !weighing) {
-                    float largest = max_component(beta);
+                    float largest = max_value(beta);
                     if (step - entries > 3u && largest < 0.25f) {
                         if (!(rng_float(rng) < largest)) break;
                         beta = beta / largest;
@@ -134,7 +134,7 @@ RARE_FN bool layered_scatter(IN(Bsdf) b, vec3 wo_any, vec3 wi_any, float uc, vec
                 float event_pdf = 0.0f;
                 float arrived = 0.0f;
                 if (!at_coat && !sampling) {
-                    vec3 reflected = vec3(0.0f);
+                    Spectrum reflected = Spectrum(0.0f);
                     if (scattered) {
                         event_pdf = henyey_greenstein(-dot3(w, -exit_w), b.g);
                         reflected = b.albedo * event_pdf;
@@ -148,7 +148,7 @@ RARE_FN bool layered_scatter(IN(Bsdf) b, vec3 wo_any, vec3 wi_any, float uc, vec
                         sum = sum + beta * reflected * exit_weight * reached;
                     }
                     if (weighing && coat_specular) {
-                        sum = sum + vec3(arrived);
+                        sum = sum + Spectrum(arrived);
                         break;
                     }
                 }
@@ -221,22 +221,22 @@ RARE_FN bool layered_scatter(IN(Bsdf) b, vec3 wo_any, vec3 wi_any, float uc, vec
                     if (outside && weighing) lobes = LOBE_REFLECTION;
                     if (!outside && valuing) lobes = LOBE_TRANSMISSION;
                     float pdf;
-                    vec3 f =
+                    Spectrum f =
                         dielectric_lobe_eval(b.alpha, b.eta, from, to, exact ? 1u - transport : transport, lobes, pdf);
                     if (outside) {
-                        surface = weighing ? vec3(pdf) : f;
+                        surface = weighing ? Spectrum(pdf) : f;
                     } else if (weighing) {
-                        sum = sum + vec3(base_specular ? pdf : arrived + power_heuristic(event_pdf, pdf) * pdf);
+                        sum = sum + Spectrum(base_specular ? pdf : arrived + power_heuristic(event_pdf, pdf) * pdf);
                     } else {
                         float share = !scattered && base_specular ? 1.0f : power_heuristic(event_pdf, pdf);
                         sum = sum + beta * f * (share * layer_transmittance(b.thickness - z, w));
                     }
                 }
-                if (!at_coat && !(max_component(beta) > 0.0f)) break;
+                if (!at_coat && !(max_value(beta) > 0.0f)) break;
             }
         }
         if (valuing) value = surface + sum / float(b.samples);
-        if (weighing) density = 0.1f * INV_FOUR_PI + 0.9f * (surface.x + sum.x / float(b.samples));
+        if (weighing) density = 0.1f * INV_FOUR_PI + 0.9f * (surface[0] + sum[0] / float(b.samples));
     }
     return found;
 }

@@ -11,12 +11,12 @@ FN Bsdf thindielectric_make(IN(MaterialRecord) m) {
 FN bool thindielectric_is_specular(IN(Bsdf) b) { return true; }
 FN bool thindielectric_chooses_lobe(IN(Bsdf) b) { return true; }
 FN bool thindielectric_transmits(IN(Bsdf) b) { return true; }
-FN vec3 thindielectric_albedo(IN(Bsdf) b) { return vec3(1.0f); }
+FN Spectrum thindielectric_albedo(IN(Bsdf) b) { return Spectrum(1.0f); }
 FN uint thindielectric_visible_action(IN(Bsdf) b, float roughness) { return VISIBLE_FOLLOW; }
 
-FN vec3 thindielectric_eval(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport, OUT(float) pdf) {
+FN Spectrum thindielectric_eval(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport, OUT(float) pdf) {
     pdf = 0.0f;
-    return vec3(0.0f);
+    return Spectrum(0.0f);
 }
 
 FN bool thindielectric_sample(IN(Bsdf) b, vec3 wo, float uc, vec2 u, uint transport, INOUT(BsdfSample) s) {
@@ -25,7 +25,7 @@ FN bool thindielectric_sample(IN(Bsdf) b, vec3 wo, float uc, vec2 u, uint transp
     bool reflected = uc < r;
     s.wi = reflected ? vec3(-wo.x, -wo.y, wo.z) : -wo;
     s.pdf = reflected ? r : 1.0f - r;
-    s.f = vec3(s.pdf / c);
+    s.f = Spectrum(s.pdf / c);
     s.lobe = (reflected ? LOBE_REFLECTION : LOBE_TRANSMISSION) | LOBE_SPECULAR;
     return s.pdf > 0.0f;
 }

@@ -5,6 +5,7 @@
 namespace lampyris {
 
 double luminance_of(glm::dvec3 rgb) { return glm::dot(rgb, glm::dvec3(0.2126, 0.7152, 0.0722)); }
+double luminance_of(Spectrum s) { return luminance_of(glm::dvec3(rgb_of(s))); }
 
 kernel::LightRecord blank_light(uint32_t kind) {
     kernel::LightRecord record{};
@@ -14,9 +15,9 @@ kernel::LightRecord blank_light(uint32_t kind) {
 
 glm::vec3 transformed_point(const glm::mat4& m, glm::vec3 p) { return glm::vec3(m * glm::vec4(p, 1.0f)); }
 
-glm::vec3 read_emission(LightContext& context, std::string_view name) {
+Spectrum read_emission(LightContext& context, std::string_view name) {
     const float scale = context.reader.get_float("scale");
-    return scale * read_spectrum(context.build, context.reader, name, SpectrumUse::kLight, glm::vec3(1.0f));
+    return scale * read_spectrum(context.build, context.reader, name, SpectrumUse::kLight, Spectrum(1.0f));
 }
 
 glm::vec3 read_direction(LightContext& context, glm::vec3& from) {

@@ -8,10 +8,11 @@
 namespace lampyris {
 
 double luminance_of(glm::dvec3 rgb);  // Rec.709
+double luminance_of(Spectrum s);
 kernel::LightRecord blank_light(uint32_t kind);
 glm::vec3 transformed_point(const glm::mat4& m, glm::vec3 p);
 // The light's intensity "I" (or "L"), times "scale".
-glm::vec3 read_emission(LightContext& context, std::string_view name);
+Spectrum read_emission(LightContext& context, std::string_view name);
 // from - to -> the direction of the light, or an error where they are one.
 glm::vec3 read_direction(LightContext& context, glm::vec3& from);
 ParameterSpec emission_spec(const std::string& name, const std::string& of_what);

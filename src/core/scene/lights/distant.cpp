@@ -15,10 +15,10 @@ void build(LightContext& context) {
     const glm::vec3 direction = read_direction(context, from);
     const glm::mat3 m(context.light.world_from_light.matrix[0]);
     record.v0 = {-glm::normalize(m * direction), 0.0f};
-    glm::vec3 irradiance = read_emission(context, "L");
+    Spectrum irradiance = read_emission(context, "L");
     if (const float illuminance = context.reader.get_float("illuminance"); illuminance > 0.0f)
         irradiance *= illuminance;
-    record.emission = {irradiance, 0.0f};
+    record.emission = slot_of(irradiance, 0.0f);
     context.ask(kernel::EFFECT_DISTANT_LIGHTS);
     context.build.lights.push_back({record, luminance_of(irradiance) * std::numbers::pi, true, context.light.location});
 }

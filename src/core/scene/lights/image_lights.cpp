@@ -26,11 +26,11 @@ bool begin_light(LightContext& context, kernel::LightRecord& record, TextureBuil
     return record.data.z != kNone;
 }
 
-void add_light(LightContext& context, kernel::LightRecord& record, glm::vec3 scale, double emitted) {
+void add_light(LightContext& context, kernel::LightRecord& record, Spectrum scale, double emitted) {
     if (const float power = context.reader.get_float("power"); power > 0.0f) {
-        scale = emitted > 0.0 ? scale * float(power / emitted) : glm::vec3(0.0f);
+        scale = emitted > 0.0 ? scale * float(power / emitted) : Spectrum(0.0f);
     }
-    record.emission = {scale, 0.0f};
+    record.emission = slot_of(scale, 0.0f);
     context.build.lights.push_back({record, luminance_of(scale) * emitted, false, context.light.location});
 }
 
@@ -54,12 +54,12 @@ void build_projection(LightContext& context) {
             emitted += luminance_of(pixels[size_t(j) * width + i]) / std::pow(1.0 + px * px + py * py, 1.5);
         }
     emitted *= 4.0 * x * y / (double(width) * height);
-    add_light(context, record, glm::vec3(scale), emitted);
+    add_light(context, record, Spectrum(scale), emitted);
 }
 
 void build_goniometric(LightContext& context) {
     kernel::LightRecord record = blank_light(kernel::LIGHT_GONIOMETRIC);
-    const glm::vec3 intensity = read_emission(context, "I");
+    const Spectrum intensity = read_emission(context, "I");
     if (!begin_light(context, record, TextureBuilder::Content::kEnvironment)) {
         // Without an image it is a point light, as in pbrt-v4.
         context.ask(kernel::EFFECT_POINT_LIGHTS);

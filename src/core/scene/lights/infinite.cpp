@@ -27,11 +27,11 @@ float octahedral_z(float s, float t) {
 
 void build_constant(LightContext& context, float scale) {
     kernel::LightRecord record = blank_light(kernel::LIGHT_INFINITE);
-    glm::vec3 radiance =
-        scale * read_spectrum(context.build, context.reader, "L", SpectrumUse::kLight, glm::vec3(1.0f));
+    Spectrum radiance =
+        scale * read_spectrum(context.build, context.reader, "L", SpectrumUse::kLight, Spectrum(1.0f));
     if (const float illuminance = context.reader.get_float("illuminance"); illuminance > 0.0f)
         radiance *= illuminance / kPi;
-    record.emission = {radiance, 0.0f};
+    record.emission = slot_of(radiance, 0.0f);
     context.ask(kernel::EFFECT_ENVIRONMENT);
     context.build.infinite_lights.push_back(
         {record, luminance_of(radiance) * 4.0 * std::numbers::pi * std::numbers::pi, true, context.light.location});

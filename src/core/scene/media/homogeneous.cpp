@@ -14,23 +14,23 @@ constexpr const char* kHint = "\"rgb sigma_s\" [ 0 0 0 ] makes one that only abs
 void build(MediumContext& context) {
     ParameterReader& reader = context.reader;
     const auto spectrum = [&](const char* name, SpectrumUse use, float absent) {
-        return read_spectrum(context.build, reader, name, use, glm::vec3(reader.has(name) ? 0.0f : absent));
+        return read_spectrum(context.build, reader, name, use, Spectrum(reader.has(name) ? 0.0f : absent));
     };
     const float scale = reader.get_float("scale");
-    const glm::vec3 absorption = scale * spectrum("sigma_a", SpectrumUse::kUnbounded, 1.0f);
-    const glm::vec3 scattering = scale * spectrum("sigma_s", SpectrumUse::kUnbounded, 1.0f);
-    const glm::vec3 emission = reader.get_float("Lescale") * spectrum("Le", SpectrumUse::kLight, 0.0f);
+    const Spectrum absorption = scale * spectrum("sigma_a", SpectrumUse::kUnbounded, 1.0f);
+    const Spectrum scattering = scale * spectrum("sigma_s", SpectrumUse::kUnbounded, 1.0f);
+    const Spectrum emission = reader.get_float("Lescale") * spectrum("Le", SpectrumUse::kLight, 0.0f);
     reader.get_float("g");
     const bool is_preset = !reader.get_string("preset").empty();
-    context.record.sigma_a = {absorption, 0.0f};
-    if (!std::isfinite(absorption.x + absorption.y + absorption.z))
+    context.record.sigma_a = slot_of(absorption, 0.0f);
+    if (!std::isfinite(absorption[0] + absorption[1] + absorption[2]))
         reader.error("sigma_a", "\"sigma_a\" times \"scale\" is not finite", "smaller numbers");
     if (is_preset) {
         context.refuse("preset", "which scatters as all presets do", kHint);
-    } else if (scattering != glm::vec3(0.0f)) {
+    } else if (scattering != Spectrum(0.0f)) {
         context.refuse("sigma_s", reader.has("sigma_s") ? "which scatters" : "which scatters (\"sigma_s\" is 1)",
                        kHint);
-    } else if (emission != glm::vec3(0.0f)) {
+    } else if (emission != Spectrum(0.0f)) {
         context.refuse("Le", "which emits", "without \"Le\" it only absorbs");
     }
 }
