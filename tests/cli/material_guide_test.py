@@ -3,6 +3,7 @@
 With --long, Lampyris is built with them and gives the answer that the scene's comment derives, on both backends.
 """
 
+import json
 import math
 import re
 import subprocess
@@ -87,8 +88,19 @@ def test_the_generator_says_what_is_wrong_with_a_folder(generate, tmp_path, fold
     assert said in " ".join(done.stderr.split())
 
 
+def cost(program, scene, folder):
+    """What a scene asks of a program: the image, the size of each shader, the scene's memory."""
+    said = {"memory": json.loads(checked(program, "describe", scene, "--json").stdout)["memory_bytes"]}
+    for backend in ["cpu", "vulkan"]:
+        image, stats = folder / "image.pfm", folder / "stats.json"
+        small = ["--resolution", "32x24", "--passes", "2", "--seed", "5"]
+        checked(program, "render", scene, "-o", image, "--stats", stats, "--backend", backend, *small)
+        said[backend] = image.read_bytes(), json.loads(stats.read_text())["spirv_bytes"]
+    return said
+
+
 @pytest.mark.long
-def test_lampyris_is_built_with_the_guides_material(source_dir, tmp_path):
+def test_lampyris_is_built_with_the_guides_material(source_dir, build_dir, tmp_path):
     write_files(tmp_path / "orennayar", guide_files(source_dir))
     options = [f"-DLAMPYRIS_EXTRA_MATERIALS={tmp_path}/orennayar", "-DLAMPYRIS_TESTS=OFF"]
     quick = ["-DLAMPYRIS_SPECIALISED_KERNELS=OFF", "-DCMAKE_BUILD_TYPE=Release"]
@@ -105,3 +117,14 @@ def test_lampyris_is_built_with_the_guides_material(source_dir, tmp_path):
         # 16 x 16 x 64 samples with a standard deviation below 0.5: 0.004 for the mean, of which this is five.
         assert sum(map(sum, rows)) / (3 * width * height) == pytest.approx(SHEET, abs=0.02)
     assert images["cpu"] == images["vulkan"]
+    # Scenes that do not ask for the new effect pay nothing: the same images, shaders and memory as without it.
+    for name in [
+        "cornell-box/scene",
+        "reference/conductor-rough",
+        "reference/coated-diffuse",
+        "reference/dielectric-rough",
+    ]:
+        scene = source_dir / f"scenes/{name}.pbrt"
+        without = cost(build_dir / "lampyris", scene, tmp_path)
+        assert without["vulkan"][1], "no shader was compiled"
+        assert cost(program, scene, tmp_path) == without, name
