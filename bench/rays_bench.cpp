@@ -145,7 +145,7 @@ int run(const std::string& file, int width, int height, uint32_t samples, int th
     const size_t closest = size_t(
         std::count_if(recorder.rays.begin(), recorder.rays.end(), [](const RecordedRay& r) { return r.closest; }));
     size_t triangles = 0;
-    for (const kernel::GeometryRecord& geometry : scene.geometries) triangles += geometry.attributes.z;
+    for (const kernel::GeometryRecord& geometry : scene.geometries) triangles += geometry.primitive_count;
     const nlohmann::ordered_json json = {{"scene", file},
                                          {"primitives", triangles},
                                          {"threads", threads},

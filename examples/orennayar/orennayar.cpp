@@ -6,14 +6,13 @@ namespace lampyris {
 namespace {
 
 void build(MaterialContext& context) {
-    context.record.data.x = kernel::MATERIAL_ORENNAYAR;
+    context.record.kind = kernel::MATERIAL_ORENNAYAR;
     context.ask(kernel::EFFECT_OREN_NAYAR);
-    set_color0(context,
-               read_color(context.build, context.reader, "reflectance", SpectrumUse::kAlbedo, Spectrum(0.5f)));
+    set_color0(context, read_color(context.build, context.reader, "reflectance", SpectrumUse::kAlbedo, Spectrum(0.5f)));
     const FloatSlot roughness = read_float(context.build, context.reader, "roughness");
-    context.record.floats.x = roughness.value;
-    context.record.textures.w = roughness.texture;
-    context.record.floats2.w = kRoughestDiffuse;
+    context.record.roughness_u = roughness.value;
+    context.record.roughness_u_texture = roughness.texture;
+    context.record.roughest_alpha = kRoughestDiffuse;
     read_surface_detail(context);
 }
 

@@ -8,8 +8,8 @@
 // The record's slots hold what the scene asks for, textures included. What scenes may not ask for ends here.
 FN Bsdf orennayar_make(IN(MaterialRecord) m) {
     Bsdf b = no_bsdf();
-    b.color0 = bounded_share(spectrum_of(m.color0));
-    b.g = clamp(m.floats.x, 0.0f, 1.0f);
+    b.color0 = bounded_share(m.color0);
+    b.g = clamp(m.roughness_u, 0.0f, 1.0f);
     return b;
 }
 

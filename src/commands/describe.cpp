@@ -42,10 +42,10 @@ Counts count(const Scene& scene) {
         size_t triangles = 0;
         for (uint32_t i = set.first_geometry; i < set.first_geometry + set.geometry_count; ++i) {
             const kernel::GeometryRecord& geometry = scene.geometries[i];
-            size_t& kind = geometry.data.x == kernel::GEOMETRY_TRIANGLES  ? triangles
-                           : geometry.data.x == kernel::GEOMETRY_BILINEAR ? counts.patches
-                                                                          : counts.quadrics;
-            kind += geometry.attributes.z;
+            size_t& kind = geometry.kind == kernel::GEOMETRY_TRIANGLES  ? triangles
+                           : geometry.kind == kernel::GEOMETRY_BILINEAR ? counts.patches
+                                                                        : counts.quadrics;
+            kind += geometry.primitive_count;
         }
         triangles_of_set.push_back(triangles);
         counts.triangles += triangles;

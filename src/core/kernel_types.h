@@ -24,3 +24,10 @@ using glm::vec4;
 #include "core/kernel/scene_buffers.h"
 #undef CONST
 }  // namespace lampyris::kernel
+
+namespace lampyris {
+// For host code, what core/kernel/spectrum.h is for kernels.
+using kernel::Spectrum;
+inline Spectrum spectrum_of_rgb(glm::vec3 rgb) { return {rgb.x, rgb.y, rgb.z}; }
+inline glm::vec3 rgb_of(Spectrum s) { return {s[0], s[1], s[2]}; }
+}  // namespace lampyris

@@ -36,7 +36,7 @@ constexpr uint32_t kRadixBits = 8, kRadixDigits = 1 << kRadixBits, kRadixBlock =
 }  // namespace
 
 kernel::PhotonRecord make_photon(glm::vec3 position, glm::vec3 direction, glm::vec3 power, uint32_t key) {
-    return kernel::PhotonCode().photon_pack(position, direction, power, key);
+    return kernel::PhotonCode().photon_pack(position, direction, {power.x, power.y, power.z}, key);
 }
 glm::vec3 direction_of(const kernel::PhotonRecord& photon) { return kernel::PhotonCode().photon_direction(photon); }
 

@@ -13,56 +13,58 @@ bool within(size_t first, size_t count, size_t size) { return first <= size && c
 bool none_or_below(uint32_t index, size_t size) { return index == kNone || index < size; }
 
 void check_geometry(const Scene& scene, const kernel::GeometryRecord& g) {
-    assert(g.ids.x < scene.materials.size());
-    assert(none_or_below(g.ids.y, scene.lights.size()));
-    assert(none_or_below(g.ids.z, scene.texture_ops.size()));
-    if (g.data.x > kernel::GEOMETRY_BILINEAR) {
-        assert(g.ids.w < scene.transforms.size());
+    assert(g.material < scene.materials.size());
+    assert(none_or_below(g.first_light, scene.lights.size()));
+    assert(none_or_below(g.alpha_texture, scene.texture_ops.size()));
+    if (g.kind > kernel::GEOMETRY_BILINEAR) {
+        assert(g.transform < scene.transforms.size());
         return;
     }
-    const size_t entries = size_t(g.attributes.z) * (g.data.x == kernel::GEOMETRY_TRIANGLES ? 3 : 4);
-    assert(within(g.data.z, entries, scene.indices.size()));
+    const size_t entries = size_t(g.primitive_count) * (g.kind == kernel::GEOMETRY_TRIANGLES ? 3 : 4);
+    assert(within(g.first_index, entries, scene.indices.size()));
     for (size_t i = 0; i < entries; ++i) {
-        const size_t corner = scene.indices[g.data.z + i];
+        const size_t corner = scene.indices[g.first_index + i];
         // Embree reads 16 bytes at every vertex.
-        assert(within(3 * (g.data.w + corner), 4, scene.positions.size()));
-        if (g.data.y & kernel::GEOMETRY_HAS_NORMALS)
-            assert(within(3 * (g.attributes.x + corner), 3, scene.normals.size()));
-        if (g.data.y & kernel::GEOMETRY_HAS_UVS) assert(within(2 * (g.attributes.y + corner), 2, scene.uvs.size()));
+        assert(within(3 * (g.first_vertex + corner), 4, scene.positions.size()));
+        if (g.flags & kernel::GEOMETRY_HAS_NORMALS)
+            assert(within(3 * (g.first_normal + corner), 3, scene.normals.size()));
+        if (g.flags & kernel::GEOMETRY_HAS_UVS) assert(within(2 * (g.first_uv + corner), 2, scene.uvs.size()));
     }
 }
 
 void check_material(const Scene& scene, const kernel::MaterialRecord& m) {
     const size_t operations = scene.texture_ops.size();
-    assert(none_or_below(m.data.z, operations) && none_or_below(m.data.w, scene.images.size()));
-    for (int i = 0; i < 4; ++i) assert(none_or_below(m.textures[i], operations));
-    for (int i = 0; i < 4; ++i) assert(none_or_below(m.textures2[i], operations));
-    if (m.data.x != kernel::MATERIAL_MIX) return;
-    assert(m.extra.x < scene.materials.size() && m.extra.y < scene.materials.size());
-    assert(none_or_below(m.extra.z, operations));
+    assert(none_or_below(m.bump_texture, operations) && none_or_below(m.normal_map, scene.images.size()));
+    for (const uint32_t texture :
+         {m.color0_texture, m.color1_texture, m.color2_texture, m.roughness_u_texture, m.roughness_v_texture,
+          m.thickness_texture, m.coat_roughness_u_texture, m.coat_roughness_v_texture})
+        assert(none_or_below(texture, operations));
+    if (m.kind != kernel::MATERIAL_MIX) return;
+    assert(m.first_material < scene.materials.size() && m.second_material < scene.materials.size());
+    assert(none_or_below(m.amount_texture, operations));
 }
 
 void check_textures(const Scene& scene) {
     for (const kernel::TextureOp& operation : scene.texture_ops) {
-        if (operation.data.x == kernel::TEXTURE_IMAGE) assert(operation.data.z < scene.images.size());
+        if (operation.operation == kernel::TEXTURE_IMAGE) assert(operation.image < scene.images.size());
     }
     // Every program ends.
-    assert(scene.texture_ops.empty() || (scene.texture_ops.back().data.y & 1));
+    assert(scene.texture_ops.empty() || (scene.texture_ops.back().flags & 1));
     for (const kernel::ImageRecord& image : scene.images) {
-        const bool grey_bytes = (image.data.w & 0xff) == kernel::TEXEL_R8;
-        const size_t pixels = size_t(image.data.y) * image.data.z;
-        assert(pixels > 0 && within(image.data.x, grey_bytes ? (pixels + 3) / 4 : pixels, scene.texels.size()));
+        const bool grey_bytes = (image.format & 0xff) == kernel::TEXEL_R8;
+        const size_t pixels = size_t(image.width) * image.height;
+        assert(pixels > 0 && within(image.first_texel, grey_bytes ? (pixels + 3) / 4 : pixels, scene.texels.size()));
     }
 }
 
 void check_light(const Scene& scene, const kernel::LightRecord& light) {
-    assert(none_or_below(light.data.w, scene.transforms.size()));
-    const bool area = light.data.x <= kernel::LIGHT_GEOMETRY;
-    assert(none_or_below(light.data.z, area ? scene.texture_ops.size() : scene.images.size()));
-    if (area) assert(light.ids.x < scene.geometries.size());
-    if (light.data.x == kernel::LIGHT_INFINITE_IMAGE) {
-        const size_t width = light.ids.y, height = light.ids.z;
-        assert(within(light.ids.x, height + 1 + height * (width + 1), scene.distributions.size()));
+    assert(none_or_below(light.transform, scene.transforms.size()));
+    const bool area = light.kind <= kernel::LIGHT_GEOMETRY;
+    assert(none_or_below(light.image, area ? scene.texture_ops.size() : scene.images.size()));
+    if (area) assert(light.geometry < scene.geometries.size());
+    if (light.kind == kernel::LIGHT_INFINITE_IMAGE) {
+        const size_t width = scene.images[light.image].width, height = scene.images[light.image].height;
+        assert(within(light.distribution, height + 1 + height * (width + 1), scene.distributions.size()));
     }
 }
 

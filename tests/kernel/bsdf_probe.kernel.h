@@ -38,15 +38,21 @@ BUFFER_RW(2, vec4, results)
 
 FN Bsdf probed_bsdf(IN(BsdfProbe) p) {
     MaterialRecord m;
-    m.data = uvec4(p.kind.x, p.kind.y, NONE, NONE);
-    m.textures = uvec4(NONE, NONE, NONE, NONE);
-    m.textures2 = uvec4(NONE, NONE, NONE, NONE);
-    m.color0 = vec4(p.color0.x, p.color0.y, p.color0.z, 1.0f);
-    m.color1 = p.color1;
-    m.color2 = p.albedo;
-    m.floats = vec4(p.alpha.x, p.alpha.y, p.coat.x, p.coat.z);
-    m.floats2 = vec4(p.coat.y, p.alpha.z, p.alpha.w, 0.0f);
-    m.extra = uvec4(p.kind.z, p.kind.w, NONE, NONE);
+    m.kind = p.kind.x;
+    m.flags = p.kind.y;
+    m.color0 = spectrum_of(p.color0);
+    m.scale = 1.0f;
+    m.color1 = spectrum_of(p.color1);
+    m.color2 = spectrum_of(p.albedo);
+    m.roughness_u = p.alpha.x;
+    m.roughness_v = p.alpha.y;
+    m.eta = p.coat.x;
+    m.g = p.coat.z;
+    m.thickness = p.coat.y;
+    m.coat_roughness_u = p.alpha.z;
+    m.coat_roughness_v = p.alpha.w;
+    m.max_depth = p.kind.z;
+    m.samples = p.kind.w;
     return bsdf_of_record(m);
 }
 

@@ -56,11 +56,12 @@ TEST(Camera, PixelFiltersAreSampled) {
             SCOPED_TRACE(backend + ", " + f.name);
             TestScene scene;
             kernel::CameraRecord& camera = scene.scene.record.camera;
-            camera.data.y = f.kind;
-            camera.filtering = vec4(f.rx, f.ry, 0, 0);
+            camera.filter_kind = f.kind;
+            camera.filter_radius_x = f.rx;
+            camera.filter_radius_y = f.ry;
             if (f.kind == kernel::PIXEL_FILTER_GAUSSIAN) {
-                camera.data.z = append_filter_table(f.x, f.rx, f.y, f.ry, scene.scene.distributions);
-                camera.data.w = kFilterTableSize;
+                camera.filter_tables = append_filter_table(f.x, f.rx, f.y, f.ry, scene.scene.distributions);
+                camera.filter_intervals = kFilterTableSize;
             }
             const auto samples = run(*device, scene.finish(), {0, 7, 0, 0}, {vec4(0)}, kSamples, 1);
 
@@ -116,7 +117,7 @@ TEST(Camera, PixelFiltersAreSampled) {
 // A camera of 200 x 100 pixels that looks along -x from (5, 1, 2), z up.
 kernel::CameraRecord camera(uint32_t kind) {
     kernel::CameraRecord c{};
-    c.data.x = kind;
+    c.kind = kind;
     // Columns of world-from-camera: right (y), up (z), forward (-x), position.
     c.to0 = vec4(0, 0, -1, 5);
     c.to1 = vec4(1, 0, 0, 1);
@@ -156,7 +157,8 @@ TEST(Camera, LensRaysMeetInThePlaneOfFocus) {
         for (const uint32_t kind : {kernel::CAMERA_PERSPECTIVE, kernel::CAMERA_ORTHOGRAPHIC}) {
             TestScene scene;
             scene.scene.record.camera = camera(kind);
-            scene.scene.record.camera.lens = vec4(kRadius, kFocus, 0, 1);
+            scene.scene.record.camera.lens_radius = kRadius;
+            scene.scene.record.camera.focal_distance = kFocus;
             std::vector<vec4> inputs;
             for (int i = 0; i < 400; ++i)
                 inputs.emplace_back(130, 70, (float(i % 20) + 0.5f) / 20, (float(i) / 20 + 0.5f) / 20.5f);

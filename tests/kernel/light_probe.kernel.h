@@ -20,9 +20,9 @@ BUFFER_RW(2, vec4, results)
 FN bool meet_light(uint light, vec3 o, vec3 d, INOUT(Surface) s) {
     LightRecord record = lights[light];
     s.light = light;
-    s.geometry = record.ids.x;
-    s.primitive = record.ids.y;
-    if (record.data.x == LIGHT_TRIANGLE) {
+    s.geometry = record.geometry;
+    s.primitive = record.primitive;
+    if (record.kind == LIGHT_TRIANGLE) {
         vec3 p0 = vec3(record.v0);
         vec3 e1 = vec3(record.v1) - p0;
         vec3 e2 = vec3(record.v2) - p0;
@@ -39,9 +39,9 @@ FN bool meet_light(uint light, vec3 o, vec3 d, INOUT(Surface) s) {
         s.uv = vec2(b1, b2);
         return true;
     }
-    if (geometries[record.ids.x].data.x == GEOMETRY_BILINEAR)
-        return bilinear_surface(record.ids.x, record.ids.y, o, d, s);
-    return quadric_surface(record.ids.x, o, d, s);
+    if (geometries[record.geometry].kind == GEOMETRY_BILINEAR)
+        return bilinear_surface(record.geometry, record.primitive, o, d, s);
+    return quadric_surface(record.geometry, o, d, s);
 }
 
 KERNEL(light_probe) {
@@ -89,7 +89,7 @@ KERNEL(light_probe) {
             }
             hits += 1.0f;
             pdf += pdf_here;
-            if (lights[light].data.x == LIGHT_TRIANGLE) break;
+            if (lights[light].kind == LIGHT_TRIANGLE) break;
             o = offset_origin(s.position, s.error, s.ng, d);
         }
     }

@@ -18,7 +18,9 @@ constexpr double kPi = std::numbers::pi;
 
 kernel::LightRecord record(uint32_t kind, uint32_t image = kernel::NONE, uint32_t transform = kernel::NONE) {
     kernel::LightRecord light{};
-    light.data = {kind, 0, image, transform};
+    light.kind = kind;
+    light.image = image;
+    light.transform = transform;
     return light;
 }
 
@@ -164,10 +166,10 @@ TEST(Lights, ManyLightsAddUp) {
                                                   kernel::EFFECT_POINT_LIGHTS),
                          scene.finish());
         float sum = 0;
-        for (const auto& light : scene.scene.lights) sum += light.emission.w;
+        for (const auto& light : scene.scene.lights) sum += light.choice_probability;
         EXPECT_NEAR(sum, 1, 1e-6);
-        EXPECT_EQ(scene.scene.lights[3].emission.w, 0);
-        EXPECT_GT(scene.scene.lights[2].emission.w, 0.01f);
+        EXPECT_EQ(scene.scene.lights[3].choice_probability, 0);
+        EXPECT_GT(scene.scene.lights[2].choice_probability, 0.01f);
         Mean mean;
         constexpr int kSamples = 200000;
         std::array<double, 3> chosen{};
@@ -179,7 +181,7 @@ TEST(Lights, ManyLightsAddUp) {
         EXPECT_LT(std::abs(mean.value() - expected), normal_threshold(1e-7) * mean.error());
         EXPECT_LT(mean.error(), 0.01 * expected);
         std::array<double, 3> counts{};
-        for (size_t i = 0; i < 3; ++i) counts[i] = kSamples * double(scene.scene.lights[i].emission.w);
+        for (size_t i = 0; i < 3; ++i) counts[i] = kSamples * double(scene.scene.lights[i].choice_probability);
         EXPECT_GT(chi_squared_test(chosen, counts).p, 1e-7);
     }
 }
@@ -192,14 +194,16 @@ TEST(Lights, EmissionHasTexturesAndMasks) {
         TestScene scene;
         const uint32_t image = scene.add_image({4, 0}, 2, 1, kernel::WRAP_CLAMP);
         kernel::TextureOp op{};
-        op.data = {kernel::TEXTURE_IMAGE, 1 | kernel::MAPPING_UV << 8, image, 0};
+        op.operation = kernel::TEXTURE_IMAGE;
+        op.flags = 1 | kernel::MAPPING_UV << 8;
+        op.image = image;
         op.a = vec4(1);
         op.m0 = vec4(1, 1, 0, 0);
         scene.scene.texture_ops.push_back(op);
         const uint32_t patch = scene.add_polygon<4>({vec3(-1, -1, 1), vec3(1, -1, 1), vec3(-1, 1, 1), vec3(1, 1, 1)});
-        scene.scene.geometries[patch].alpha.x = 0.5f;
+        scene.scene.geometries[patch].alpha = 0.5f;
         scene.add_area_light(patch, vec3(0.5f), kernel::LIGHT_TWO_SIDED);
-        scene.scene.lights[0].data.z = 0;
+        scene.scene.lights[0].image = 0;
         LightAsker asker(
             *device,
             light_probe(*device, kernel::EFFECT_AREA_LIGHTS | kernel::EFFECT_QUADRIC_LIGHTS | kernel::EFFECT_BILINEAR |

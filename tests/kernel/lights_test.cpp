@@ -216,16 +216,18 @@ TEST(Lights, InfiniteLightsAreSampledWithTheirDensity) {
             TestScene scene;
             if (lights & 1) {
                 kernel::LightRecord light{};
-                light.data = {kernel::LIGHT_INFINITE, 0, kernel::NONE, kernel::NONE};
+                light.kind = kernel::LIGHT_INFINITE;
+                light.image = light.transform = kernel::NONE;
                 scene.add_light(light, vec3(0.3f));
             }
             if (lights & 2) {
                 kernel::LightRecord light{};
-                light.data = {kernel::LIGHT_INFINITE_IMAGE, 0, scene.add_image(picture, 8, 8, kernel::WRAP_OCTAHEDRAL),
-                              uint32_t(scene.scene.transforms.size())};
+                light.kind = kernel::LIGHT_INFINITE_IMAGE;
+                light.image = scene.add_image(picture, 8, 8, kernel::WRAP_OCTAHEDRAL);
+                light.transform = uint32_t(scene.scene.transforms.size());
                 scene.scene.transforms.push_back(transform_of(glm::rotate(dmat4(1.0), 0.5, dvec3(1, 0, 0))));
-                light.ids = {append_image_distribution(picture, 8, 8, kEvenLightShare, scene.scene.distributions), 8, 8,
-                             0};
+                light.distribution =
+                    append_image_distribution(picture, 8, 8, kEvenLightShare, scene.scene.distributions);
                 scene.add_light(light, vec3(0.5f), 2.0f);
             }
             scene.scene.record.infinite_lights = uint32_t(scene.scene.lights.size());

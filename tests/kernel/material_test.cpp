@@ -58,12 +58,19 @@ std::vector<kernel::MaterialRecord> all_materials() {
             const bool is_conductor = kind == kernel::MATERIAL_CONDUCTOR || kind == kernel::MATERIAL_COATEDCONDUCTOR;
             if (flags == kernel::MATERIAL_USES_REFLECTANCE && !is_conductor) continue;
             kernel::MaterialRecord& m = scene.add_material(kind, flags);
-            m.color0 = {0.2f, 0.5f, 0.7f, 0.9f};
-            m.color1 = {0.3f, 0.6f, 0.8f, 0};
-            m.color2 = {0.1f, 0.4f, 0.9f, 0};
-            m.floats = {0.25f, 0.36f, 1.5f, 0.3f};
-            m.floats2 = {0.05f, 0.16f, 0.49f, 0};
-            m.extra = {7, 3, kernel::NONE, 0};
+            m.color0 = {0.2f, 0.5f, 0.7f};
+            m.scale = 0.9f;
+            m.color1 = {0.3f, 0.6f, 0.8f};
+            m.color2 = {0.1f, 0.4f, 0.9f};
+            m.roughness_u = 0.25f;
+            m.roughness_v = 0.36f;
+            m.eta = 1.5f;
+            m.g = 0.3f;
+            m.thickness = 0.05f;
+            m.coat_roughness_u = 0.16f;
+            m.coat_roughness_v = 0.49f;
+            m.max_depth = 7;
+            m.samples = 3;
         }
     return scene.scene.materials;
 }
@@ -78,38 +85,38 @@ TEST(Material, ParametersArriveAsTheModelsWantThem) {
         for (size_t i = 0; i < got.size(); ++i) {
             const kernel::MaterialRecord& m = scene.scene.materials[i];
             const Answer& a = got[i];
-            SCOPED_TRACE(testing::Message() << backend << ", kind " << m.data.x << ", flags " << m.data.y);
-            EXPECT_EQ(a.what.x, m.data.x);
+            SCOPED_TRACE(testing::Message() << backend << ", kind " << m.kind << ", flags " << m.flags);
+            EXPECT_EQ(a.what.x, m.kind);
             EXPECT_EQ(a.what.y, i);
-            const bool remap = (m.data.y & kernel::MATERIAL_REMAP) != 0;
+            const bool remap = (m.flags & kernel::MATERIAL_REMAP) != 0;
             const glm::vec2 alpha = remap ? glm::vec2(0.5f, 0.6f) : glm::vec2(0.25f, 0.36f);
             const glm::vec2 coat = remap ? glm::vec2(0.4f, 0.7f) : glm::vec2(0.16f, 0.49f);
-            const bool on_metal = m.data.x == kernel::MATERIAL_COATEDCONDUCTOR;
-            const bool is_conductor = m.data.x == kernel::MATERIAL_CONDUCTOR || on_metal;
-            glm::dvec3 color0(m.color0), color1(m.color1);
-            if (m.data.y & kernel::MATERIAL_USES_REFLECTANCE) {
+            const bool on_metal = m.kind == kernel::MATERIAL_COATEDCONDUCTOR;
+            const bool is_conductor = m.kind == kernel::MATERIAL_CONDUCTOR || on_metal;
+            glm::dvec3 color0(rgb_of(m.color0)), color1(rgb_of(m.color1));
+            if (m.flags & kernel::MATERIAL_USES_REFLECTANCE) {
                 // (eta - 1)^2 + k^2 over (eta + 1)^2 + k^2 is the reflectance at normal incidence; eta = 1.
                 for (int c = 0; c < 3; ++c) color1[c] = std::sqrt(4 * color0[c] / (1 - color0[c]));
                 color0 = glm::dvec3(1);
             }
             if (on_metal) color0 /= 1.5, color1 /= 1.5;
-            if (m.data.x == kernel::MATERIAL_DIFFUSETRANSMISSION) color0 *= 0.9f, color1 *= 0.9f;
-            const bool has_color = is_conductor || m.data.x == kernel::MATERIAL_DIFFUSE ||
-                                   m.data.x == kernel::MATERIAL_DIFFUSETRANSMISSION ||
-                                   m.data.x == kernel::MATERIAL_COATEDDIFFUSE;
+            if (m.kind == kernel::MATERIAL_DIFFUSETRANSMISSION) color0 *= 0.9f, color1 *= 0.9f;
+            const bool has_color = is_conductor || m.kind == kernel::MATERIAL_DIFFUSE ||
+                                   m.kind == kernel::MATERIAL_DIFFUSETRANSMISSION ||
+                                   m.kind == kernel::MATERIAL_COATEDDIFFUSE;
             if (has_color) expect_near(xyz(a.color0), color0, 1e-6);
-            if (is_conductor || m.data.x == kernel::MATERIAL_DIFFUSETRANSMISSION)
+            if (is_conductor || m.kind == kernel::MATERIAL_DIFFUSETRANSMISSION)
                 expect_near(xyz(a.color1), color1, 1e-6);
-            const bool is_coat = on_metal || m.data.x == kernel::MATERIAL_COATEDDIFFUSE;
+            const bool is_coat = on_metal || m.kind == kernel::MATERIAL_COATEDDIFFUSE;
             if (is_coat) {
-                expect_near(xyz(a.albedo), glm::dvec3(m.color2), 0);
+                expect_near(xyz(a.albedo), glm::dvec3(rgb_of(m.color2)), 0);
                 EXPECT_EQ(a.coat.x, 1.5f);
                 EXPECT_EQ(a.coat.y, 0.05f);
                 EXPECT_EQ(a.coat.z, 0.3f);
                 EXPECT_EQ(a.what.w, 7u);
             }
             const glm::vec2 interface_alpha = on_metal ? coat : alpha;
-            if (is_coat || m.data.x == kernel::MATERIAL_CONDUCTOR || m.data.x == kernel::MATERIAL_DIELECTRIC) {
+            if (is_coat || m.kind == kernel::MATERIAL_CONDUCTOR || m.kind == kernel::MATERIAL_DIELECTRIC) {
                 EXPECT_NEAR(a.alpha.x, interface_alpha.x, 1e-6);
                 EXPECT_NEAR(a.alpha.y, interface_alpha.y, 1e-6);
             }
@@ -119,7 +126,7 @@ TEST(Material, ParametersArriveAsTheModelsWantThem) {
             }
             if (is_conductor) {
                 EXPECT_EQ(a.what.z & kernel::MATERIAL_ENERGY_COMPENSATION,
-                          m.data.y & kernel::MATERIAL_ENERGY_COMPENSATION);
+                          m.flags & kernel::MATERIAL_ENERGY_COMPENSATION);
             }
             EXPECT_EQ(xyz(a.frame_z), glm::vec3(0, 0, 1));
         }
@@ -132,16 +139,18 @@ TEST(Material, TexturesReplaceConstants) {
     const std::vector<kernel::MaterialRecord> constant = all_materials();
     scene.scene.materials = constant;
     for (kernel::MaterialRecord m : constant) {
-        m.textures = {scene.add_program({constant_op(m.color0)}), scene.add_program({constant_op(m.color1)}),
-                      scene.add_program({constant_op(m.color2)}),
-                      scene.add_program({constant_op(glm::vec3(m.floats.x))})};
-        m.textures2 = {scene.add_program({constant_op(glm::vec3(m.floats.y))}),
-                       scene.add_program({constant_op(glm::vec3(m.floats2.x))}),
-                       scene.add_program({constant_op(glm::vec3(m.floats2.y))}),
-                       scene.add_program({constant_op(glm::vec3(m.floats2.z))})};
-        m.color0 = m.color1 = m.color2 = glm::vec4(0.01f, 0.02f, 0.03f, m.color0.w);
-        m.floats.x = m.floats.y = 0.9f;
-        m.floats2 = glm::vec4(0.9f);
+        const auto color = [&](kernel::Spectrum s) { return scene.add_program({constant_op(rgb_of(s))}); };
+        const auto number = [&](float x) { return scene.add_program({constant_op(glm::vec3(x))}); };
+        m.color0_texture = color(m.color0);
+        m.color1_texture = color(m.color1);
+        m.color2_texture = color(m.color2);
+        m.roughness_u_texture = number(m.roughness_u);
+        m.roughness_v_texture = number(m.roughness_v);
+        m.thickness_texture = number(m.thickness);
+        m.coat_roughness_u_texture = number(m.coat_roughness_u);
+        m.coat_roughness_v_texture = number(m.coat_roughness_v);
+        m.color0 = m.color1 = m.color2 = {0.01f, 0.02f, 0.03f};
+        m.roughness_u = m.roughness_v = m.thickness = m.coat_roughness_u = m.coat_roughness_v = 0.9f;
         scene.scene.materials.push_back(m);
     }
     std::vector<Probe> probes;
@@ -166,8 +175,10 @@ TEST(Material, MixesInProportion) {
     for (int i = 0; i < 4; ++i) scene.add_material(kernel::MATERIAL_DIFFUSE);
     const auto add_mix = [&](uint32_t first, uint32_t second, float amount, uint32_t program) {
         kernel::MaterialRecord& m = scene.add_material(kernel::MATERIAL_MIX);
-        m.floats.x = amount;
-        m.extra = {first, second, program, 0};
+        m.amount = amount;
+        m.amount_texture = program;
+        m.first_material = first;
+        m.second_material = second;
         return uint32_t(scene.scene.materials.size() - 1);
     };
     std::mt19937 random(5);
@@ -206,8 +217,8 @@ TEST(Material, MixIsTheSameForAllWhoAsk) {
     scene.add_material(kernel::MATERIAL_DIFFUSE);
     scene.add_material(kernel::MATERIAL_DIFFUSE);
     kernel::MaterialRecord& m = scene.add_material(kernel::MATERIAL_MIX);
-    m.floats.x = 0.5f;
-    m.extra = {0, 1, kernel::NONE, 0};
+    m.amount = 0.5f;
+    m.second_material = 1;
     std::vector<Probe> probes;
     for (int i = 0; i < 1000; ++i) probes.push_back(on_plane(2, {float(i) * 0.001f, 0.5f}));
     std::vector<Answer> first;
@@ -237,7 +248,7 @@ TEST(Material, BumpOnAPlane) {
                           {0, 1, 0.5f, {0, 1, 0}, {1, 0, 0}}};  // the last: v runs the other way round
     for (const Case& c : cases) {
         kernel::MaterialRecord& m = scene.add_material(kernel::MATERIAL_DIFFUSE);
-        m.data.z = add_ramp(scene, c.at, c.a, c.b);
+        m.bump_texture = add_ramp(scene, c.at, c.a, c.b);
         probes.push_back(on_plane(uint32_t(scene.scene.materials.size() - 1), {0.3f, 0.6f}, c.dpdu, c.dpdv));
         glm::dvec3 normal = glm::normalize(
             glm::cross(glm::dvec3(c.dpdu) + glm::dvec3(0, 0, c.a), glm::dvec3(c.dpdv) + glm::dvec3(0, 0, c.b)));
@@ -253,7 +264,7 @@ TEST(Material, BumpOnAPlane) {
 // On the side of a surface whose orientation is reversed, a bump is outward along the reversed normal.
 TEST(Material, BumpOnAReversedPlane) {
     TextureScene scene;
-    scene.add_material(kernel::MATERIAL_DIFFUSE).data.z = add_ramp(scene, 0, 0.5f, 0.25f);
+    scene.add_material(kernel::MATERIAL_DIFFUSE).bump_texture = add_ramp(scene, 0, 0.5f, 0.25f);
     Probe p = on_plane(0);
     p.ng = p.ns = {0, 0, -1, 0};
     // The surface is at z = -(0.5 u + 0.25 v), seen from below.
@@ -269,7 +280,7 @@ TEST(Material, BumpOnASphere) {
     // In space: x of the unit sphere's equator is cos(phi).
     TextureOp x = operation(kernel::TEXTURE_BILERP, kernel::MAPPING_PLANAR);
     x.m0 = {1, 0, 0, 0};
-    scene.add_material(kernel::MATERIAL_DIFFUSE).data.z =
+    scene.add_material(kernel::MATERIAL_DIFFUSE).bump_texture =
         scene.add_program({constant_op(glm::vec3(0)), constant_op(glm::vec3(0)), constant_op(glm::vec3(c)),
                            constant_op(glm::vec3(c)), x});
     std::vector<Probe> probes;
@@ -302,7 +313,7 @@ TEST(Material, NormalMap) {
         for (int channel = 0; channel < 3; ++channel) words.push_back(std::bit_cast<uint32_t>(encoded[channel]));
     const uint32_t image =
         scene.add_image(words, 2, 2, kernel::TEXEL_RGB32F, kernel::WRAP_REPEAT, kernel::FILTER_BILINEAR);
-    scene.add_material(kernel::MATERIAL_DIFFUSE).data.w = image;
+    scene.add_material(kernel::MATERIAL_DIFFUSE).normal_map = image;
     const glm::dvec3 n = glm::normalize(2.0 * glm::dvec3(encoded) - 1.0);
     Probe turned = on_plane(0, {0.3f, 0.6f}, {0, 2, 0}, {-3, 0, 0});
     for (const std::string& backend : backend_names()) {
@@ -316,9 +327,9 @@ TEST(Material, NormalMap) {
 TEST(Material, Frames) {
     TextureScene scene;
     kernel::MaterialRecord& m = scene.add_material(kernel::MATERIAL_CONDUCTOR);
-    m.color0 = glm::vec4(1);
-    m.floats.x = 0.1f;
-    m.floats.y = 0.4f;
+    m.color0 = kernel::Spectrum(1.0f);
+    m.roughness_u = 0.1f;
+    m.roughness_v = 0.4f;
     Probe p = on_plane(0, {0.3f, 0.6f}, {1, 2, 0}, {-3, 1, 0});
     p.ns = glm::vec4(glm::normalize(glm::vec3(0.1f, -0.2f, 1)), 0);
     for (const std::string& backend : backend_names()) {

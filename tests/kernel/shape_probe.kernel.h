@@ -13,7 +13,7 @@ KERNEL(shape_probe) {
     float t_max = rays[3u * index + 2u].w;
     uint geometry = uint(rays[3u * index].w);
     uint primitive = uint(rays[3u * index + 1u].w);
-    bool is_patch = geometries[geometry].data.x == GEOMETRY_BILINEAR;
+    bool is_patch = geometries[geometry].kind == GEOMETRY_BILINEAR;
     Surface s = no_surface();
     bool hit;
     bool before;

@@ -160,9 +160,9 @@ TEST(Texture, RandomTrees) {
                                        kernel::TEXTURE_CHECKERBOARD};
         if (levels == 0) return random() % 2 ? constant_node(random) : st_node(kernel::MAPPING_UV, random);
         TextureNode node{operation(kKinds[random() % 4]), {}};
-        if (node.op.data.x == kernel::TEXTURE_DIRECTION_MIX) node.op.a = {0, 0, 1, 0};
-        if (node.op.data.x == kernel::TEXTURE_CHECKERBOARD) node.op.m0 = {2, 2, 0.3f, 0.3f};
-        const size_t count = node.op.data.x == kernel::TEXTURE_MIX ? 3 : 2;
+        if (node.op.operation == kernel::TEXTURE_DIRECTION_MIX) node.op.a = {0, 0, 1, 0};
+        if (node.op.operation == kernel::TEXTURE_CHECKERBOARD) node.op.m0 = {2, 2, 0.3f, 0.3f};
+        const size_t count = node.op.operation == kernel::TEXTURE_MIX ? 3 : 2;
         for (size_t i = 0; i < count; ++i)
             node.operands.push_back(i + 1 == count ? tree(levels - 1) : tree(int(random() % uint32_t(levels))));
         return node;
@@ -202,7 +202,7 @@ TEST(Texture, EndlessProgramIsReported) {
     TextureScene scene;
     scene.scene.texture_ops.assign(2 * kernel::TEXTURE_LENGTH, operation(kernel::TEXTURE_CONSTANT));
     for (size_t i = 1; i < scene.scene.texture_ops.size(); i += 2)
-        scene.scene.texture_ops[i].data.x = kernel::TEXTURE_SCALE;
+        scene.scene.texture_ops[i].operation = kernel::TEXTURE_SCALE;
     scene.scene.texture_ops.insert(scene.scene.texture_ops.begin(), constant_op(glm::vec3(1)));
     for (const std::string& backend : backend_names())
         EXPECT_ANY_THROW(scene.run<glm::vec4>(backend, kFile, std::vector<Probe>(1))) << backend;
@@ -327,7 +327,7 @@ TEST(Image, InPrograms) {
         const PlainImage image =
             random_image(scene, random, kernel::TEXEL_RGBA8, kernel::WRAP_REPEAT, kernel::FILTER_BILINEAR, index);
         TextureNode node{operation(kernel::TEXTURE_IMAGE, kernel::MAPPING_UV, invert), {}};
-        node.op.data.z = index;
+        node.op.image = index;
         node.op.a = {1.5f, 0.5f, 2.0f, 0};
         node.op.m0 = {2, -3, 0.25f, 0.5f};
         expect_program(scene, node, random, 1e-5,

@@ -40,15 +40,17 @@ struct TraceScene {
     Scene scene;
     TraceScene() {
         scene.sets.push_back({0, 0});
-        scene.instances.push_back({scale_and_move(vec3(1), vec3(0)), uvec4(0)});
+        scene.instances.push_back({scale_and_move(vec3(1), vec3(0)), 0, 0, 0, 0});
         scene.instance_sets.push_back(0);
     }
     uint32_t add(uint32_t kind, uint32_t primitives) {
         kernel::GeometryRecord g{};
-        g.data = {kind, 0, uint32_t(scene.indices.size()), uint32_t(scene.positions.size() / 3)};
-        g.ids = {0, kernel::NONE, kernel::NONE, 0};
-        g.attributes = {0, 0, primitives, 0};
-        g.alpha = vec4(1);
+        g.kind = kind;
+        g.first_index = uint32_t(scene.indices.size());
+        g.first_vertex = uint32_t(scene.positions.size() / 3);
+        g.first_light = g.alpha_texture = kernel::NONE;
+        g.primitive_count = primitives;
+        g.alpha = 1.0f;
         scene.geometries.push_back(g);
         ++scene.sets.back().geometry_count;
         return uint32_t(scene.geometries.size() - 1);
@@ -67,19 +69,18 @@ struct TraceScene {
     void add_quadric(uint32_t kind, vec4 params, const kernel::TransformRecord& transform) {
         const uint32_t geometry = add(kind, 1);
         scene.geometries[geometry].params = params;
-        scene.geometries[geometry].ids.w = uint32_t(scene.transforms.size());
+        scene.geometries[geometry].transform = uint32_t(scene.transforms.size());
         scene.transforms.push_back(transform);
         scene.effects.ask(kernel::EFFECT_QUADRICS, "test");
     }
     void begin_object() { scene.sets.push_back({uint32_t(scene.geometries.size()), 0}); }
     void add_instance(uint32_t set, const kernel::TransformRecord& transform) {
-        scene.instances.push_back(
-            {transform, uvec4(scene.sets[set].first_geometry, scene.sets[set].geometry_count, 0, 0)});
+        scene.instances.push_back({transform, scene.sets[set].first_geometry, scene.sets[set].geometry_count, 0, 0});
         scene.instance_sets.push_back(set);
         scene.effects.ask(kernel::EFFECT_INSTANCES, "test");
     }
     Scene& finish() {
-        scene.instances[0].data = {0, scene.sets[0].geometry_count, 0, 0};
+        scene.instances[0].geometry_count = scene.sets[0].geometry_count;
         scene.record.geometry_count = uint32_t(scene.geometries.size());
         scene.record.instance_count = uint32_t(scene.instances.size());
         scene.record_effects(kernel::kAllEffects);

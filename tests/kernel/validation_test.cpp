@@ -42,12 +42,12 @@ Scene small_scene() {
     scene.indices = {0, 1, 2, 1, 3, 2};
     for (uint32_t g = 0; g < 2; ++g) {
         kernel::GeometryRecord geometry{};
-        geometry.data = {kernel::GEOMETRY_TRIANGLES, 0, 0, 0};
-        geometry.ids = {0, kernel::NONE, kernel::NONE, 0};
-        geometry.attributes.z = 2;
+        geometry.kind = kernel::GEOMETRY_TRIANGLES;
+        geometry.first_light = geometry.alpha_texture = kernel::NONE;
+        geometry.primitive_count = 2;
         scene.geometries.push_back(geometry);
         scene.sets.push_back({g, 1});
-        scene.instances.push_back({identity, {g, 1, 0, 0}});
+        scene.instances.push_back({identity, g, 1, 0, 0});
         scene.instance_sets.push_back(g);
     }
     scene.effects.ask(kernel::EFFECT_INSTANCES, "test");

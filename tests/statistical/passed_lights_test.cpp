@@ -47,7 +47,7 @@ TEST(PassedLight, IsToldByItsAlpha) {
             "\"sphere\" " +
             alpha + "\n");
         EXPECT_TRUE(built.errors.empty()) << built.all_errors();
-        return built.scene().lights.at(0).data.y & kernel::LIGHT_PASSED;
+        return built.scene().lights.at(0).flags & kernel::LIGHT_PASSED;
     };
     EXPECT_EQ(flags("\"float alpha\" 0"), kernel::LIGHT_PASSED);
     EXPECT_EQ(flags("\"texture alpha\" \"nothing\""), kernel::LIGHT_PASSED);

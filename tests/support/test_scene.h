@@ -30,28 +30,33 @@ class TestScene {
 
     TestScene() {
         scene.transforms.push_back(transform_of(glm::dmat4(1.0)));
-        scene.instances.push_back({scene.transforms[0], glm::uvec4(0)});
+        scene.instances.push_back({scene.transforms[0], 0, 0, 0, 0});
         scene.instance_sets.push_back(0);
         kernel::MaterialRecord material{};
-        material.data = {kernel::MATERIAL_DIFFUSE, 0, kernel::NONE, kernel::NONE};
-        material.textures = material.textures2 = glm::uvec4(kernel::NONE);
-        material.color0 = glm::vec4(0.5f);
+        material.kind = kernel::MATERIAL_DIFFUSE;
+        forget_textures(material);
+        material.color0 = kernel::Spectrum(0.5f);
         scene.materials.push_back(material);
     }
 
     uint32_t add_geometry(uint32_t kind, uint32_t flags, uint32_t primitives) {
         kernel::GeometryRecord g{};
-        g.data = {kind, flags, uint32_t(scene.indices.size()), uint32_t(scene.positions.size() / 3)};
-        g.ids = {0, kernel::NONE, kernel::NONE, 0};
-        g.attributes = {uint32_t(scene.normals.size() / 3), uint32_t(scene.uvs.size() / 2), primitives, 0};
-        g.alpha = glm::vec4(1.0f);
+        g.kind = kind;
+        g.flags = flags;
+        g.first_index = uint32_t(scene.indices.size());
+        g.first_vertex = uint32_t(scene.positions.size() / 3);
+        g.first_light = g.alpha_texture = kernel::NONE;
+        g.first_normal = uint32_t(scene.normals.size() / 3);
+        g.first_uv = uint32_t(scene.uvs.size() / 2);
+        g.primitive_count = primitives;
+        g.alpha = 1.0f;
         scene.geometries.push_back(g);
         return uint32_t(scene.geometries.size() - 1);
     }
     uint32_t add_quadric(uint32_t kind, glm::vec4 params, const glm::dmat4& to = glm::dmat4(1.0), uint32_t flags = 0) {
         const uint32_t index = add_geometry(kind, flags, 1);
         scene.geometries[index].params = params;
-        scene.geometries[index].ids.w = uint32_t(scene.transforms.size());
+        scene.geometries[index].transform = uint32_t(scene.transforms.size());
         scene.transforms.push_back(transform_of(to));
         return index;
     }
@@ -70,22 +75,24 @@ class TestScene {
     uint32_t add_area_light(uint32_t geometry, glm::vec3 radiance, uint32_t flags = 0) {
         kernel::GeometryRecord& g = scene.geometries[geometry];
         kernel::LightRecord light{};
-        const bool triangle = g.data.x == kernel::GEOMETRY_TRIANGLES;
+        const bool triangle = g.kind == kernel::GEOMETRY_TRIANGLES;
         if (triangle) {
             std::array<glm::vec3, 3> p;
             for (uint32_t i = 0; i < 3; ++i) {
-                const float* v = &scene.positions[3 * (g.data.w + scene.indices[g.data.z + i])];
+                const float* v = &scene.positions[3 * (g.first_vertex + scene.indices[g.first_index + i])];
                 p[i] = {v[0], v[1], v[2]};
             }
-            light = triangle_light(p[0], p[1], p[2], g.data.y);
+            light = triangle_light(p[0], p[1], p[2], g.flags);
         }
-        light.data = {triangle ? kernel::LIGHT_TRIANGLE : kernel::LIGHT_GEOMETRY, flags, kernel::NONE, kernel::NONE};
-        light.ids = {geometry, 0, 0, 0};
-        g.ids.y = uint32_t(scene.lights.size());
+        light.kind = triangle ? kernel::LIGHT_TRIANGLE : kernel::LIGHT_GEOMETRY;
+        light.flags = flags;
+        light.image = light.transform = kernel::NONE;
+        light.geometry = geometry;
+        g.first_light = uint32_t(scene.lights.size());
         return add_light(light, radiance);
     }
     uint32_t add_light(kernel::LightRecord light, glm::vec3 emission, float power = 1.0f) {
-        light.emission = glm::vec4(emission, 0.0f);
+        light.emission = spectrum_of_rgb(emission);
         scene.lights.push_back(light);
         powers.push_back(power);
         return uint32_t(scene.lights.size() - 1);
@@ -93,8 +100,10 @@ class TestScene {
     // A picture of floats, one channel, row by row from the top.
     uint32_t add_image(const std::vector<float>& values, uint32_t width, uint32_t height, uint32_t wrap) {
         kernel::ImageRecord image{};
-        image.data = {uint32_t(scene.texels.size()), width, height,
-                      kernel::TEXEL_R32F | wrap << 8 | kernel::FILTER_POINT << 16};
+        image.first_texel = uint32_t(scene.texels.size());
+        image.width = width;
+        image.height = height;
+        image.format = kernel::TEXEL_R32F | wrap << 8 | kernel::FILTER_POINT << 16;
         for (const float value : values) scene.texels.push_back(std::bit_cast<uint32_t>(value));
         scene.images.push_back(image);
         return uint32_t(scene.images.size() - 1);

@@ -94,7 +94,7 @@ size_t stack_depth(const TextureNode& node) {
 }
 
 glm::dvec2 reference_st(const TextureOp& op, const TexturePoint& point) {
-    const uint32_t mapping = op.data.y >> 8;
+    const uint32_t mapping = op.flags >> 8;
     if (mapping == kernel::MAPPING_UV) return {op.m0.x * point.uv.x + op.m0.z, op.m0.y * point.uv.y + op.m0.w};
     if (mapping == kernel::MAPPING_PLANAR)
         return {glm::dot(glm::dvec3(op.m0), point.position) + op.m0.w,
@@ -110,28 +110,28 @@ glm::dvec3 reference_color(const TextureNode& node, const TexturePoint& point, c
     const TextureOp& op = node.op;
     std::vector<glm::dvec3> x;
     for (const TextureNode& operand : node.operands) x.push_back(reference_color(operand, point, images, margin));
-    switch (op.data.x) {
+    switch (op.operation) {
         case kernel::TEXTURE_CONSTANT: return glm::dvec3(op.a);
         case kernel::TEXTURE_IMAGE: {
             const glm::dvec2 st = reference_st(op, point);
-            const glm::dvec3 value = glm::dvec3(op.a) * images(op.data.z, {st.x, 1 - st.y}, margin);
-            return op.data.w ? glm::max(1.0 - value, 0.0) : value;
+            const glm::dvec3 value = glm::dvec3(op.a) * images(op.image, {st.x, 1 - st.y}, margin);
+            return op.option ? glm::max(1.0 - value, 0.0) : value;
         }
         case kernel::TEXTURE_FBM:
-            return glm::dvec3(octaves(texture_space(op, point.position), op.a.x, op.data.w, false));
+            return glm::dvec3(octaves(texture_space(op, point.position), op.a.x, op.option, false));
         case kernel::TEXTURE_WRINKLED:
-            return glm::dvec3(octaves(texture_space(op, point.position), op.a.x, op.data.w, true));
+            return glm::dvec3(octaves(texture_space(op, point.position), op.a.x, op.option, true));
         case kernel::TEXTURE_WINDY: {
             const glm::dvec3 p = texture_space(op, point.position);
-            return glm::dvec3(std::abs(octaves(0.1 * p, 0.5, 3, false)) * octaves(p, 0.5, op.data.w, false));
+            return glm::dvec3(std::abs(octaves(0.1 * p, 0.5, 3, false)) * octaves(p, 0.5, op.option, false));
         }
         case kernel::TEXTURE_MARBLE: {
             const glm::dvec3 p = double(op.a.y) * texture_space(op, point.position);
-            return marble(0.5 + 0.5 * std::sin(p.y + op.a.z * octaves(p, op.a.x, op.data.w, false)));
+            return marble(0.5 + 0.5 * std::sin(p.y + op.a.z * octaves(p, op.a.x, op.option, false)));
         }
         case kernel::TEXTURE_CHECKERBOARD: {
             glm::dvec3 p(reference_st(op, point), 0.5);
-            if (op.data.y >> 8 == kernel::MAPPING_SPACE) p = texture_space(op, point.position);
+            if (op.flags >> 8 == kernel::MAPPING_SPACE) p = texture_space(op, point.position);
             int64_t cell = 0;
             for (int axis = 0; axis < 3; ++axis) {
                 margin = std::min(margin, edge_distance(p[axis]));

@@ -24,7 +24,7 @@ struct TextureScene {
         kernel::TransformRecord identity{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0},
                                          {1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
         scene.transforms.push_back(identity);
-        scene.instances.push_back({identity, {0, 1, 0, 0}});
+        scene.instances.push_back({identity, 0, 1, 0, 0});
         scene.instance_sets.push_back(0);
         scene.sets.push_back({0, 1});
         add_geometry(kernel::NONE, 1.0f);
@@ -44,15 +44,16 @@ struct TextureScene {
     // Only the first geometry is traced; the others are there to be asked for their opacity.
     uint32_t add_geometry(uint32_t alpha_texture, float alpha) {
         kernel::GeometryRecord g{};
-        g.data = {kernel::GEOMETRY_TRIANGLES, 0, 0, 0};
-        g.ids = {0, kernel::NONE, alpha_texture, 0};
-        g.attributes = {0, 0, 1, 0};
-        g.alpha.x = alpha;
+        g.kind = kernel::GEOMETRY_TRIANGLES;
+        g.first_light = kernel::NONE;
+        g.alpha_texture = alpha_texture;
+        g.primitive_count = 1;
+        g.alpha = alpha;
         scene.geometries.push_back(g);
         return uint32_t(scene.geometries.size() - 1);
     }
     uint32_t add_program(std::vector<TextureOp> ops) {
-        ops.back().data.y |= 1u;
+        ops.back().flags |= 1u;
         const uint32_t first = uint32_t(scene.texture_ops.size());
         scene.texture_ops.insert(scene.texture_ops.end(), ops.begin(), ops.end());
         return first;
@@ -60,8 +61,11 @@ struct TextureScene {
     uint32_t add_image(const std::vector<uint32_t>& words, uint32_t width, uint32_t height, uint32_t format,
                        uint32_t wrap, uint32_t filtering, uint32_t decode = 0) {
         kernel::ImageRecord image{};
-        image.data = {uint32_t(scene.texels.size()), width, height, format | wrap << 8 | filtering << 16};
-        image.decode.x = decode;
+        image.first_texel = uint32_t(scene.texels.size());
+        image.width = width;
+        image.height = height;
+        image.format = format | wrap << 8 | filtering << 16;
+        image.decoding = decode;
         scene.texels.insert(scene.texels.end(), words.begin(), words.end());
         scene.images.push_back(image);
         return uint32_t(scene.images.size() - 1);
@@ -69,10 +73,12 @@ struct TextureScene {
     // A material without textures; the test changes the record that it gets.
     kernel::MaterialRecord& add_material(uint32_t kind, uint32_t flags = 0) {
         kernel::MaterialRecord m{};
-        m.data = {kind, flags, kernel::NONE, kernel::NONE};
-        m.textures = m.textures2 = glm::uvec4(kernel::NONE);
-        m.floats.z = 1.5f;
-        m.extra = {10, 1, kernel::NONE, 0};
+        m.kind = kind;
+        m.flags = flags;
+        forget_textures(m);
+        m.eta = 1.5f;
+        m.max_depth = 10;
+        m.samples = 1;
         scene.materials.push_back(m);
         return scene.materials.back();
     }
@@ -103,7 +109,9 @@ struct TextureScene {
 
 inline TextureOp operation(uint32_t kind, uint32_t mapping = kernel::MAPPING_UV, uint32_t option = 0) {
     TextureOp op{};
-    op.data = {kind, mapping << 8, 0, option};
+    op.operation = kind;
+    op.flags = mapping << 8;
+    op.option = option;
     op.m0 = {1, 1, 0, 0};
     return op;
 }

@@ -34,19 +34,26 @@ AttributeEnd
     ASSERT_EQ(text.all_errors(), "");
     const Scene& scene = text.scene();
     ASSERT_EQ(scene.geometries.size(), 2u);
-    EXPECT_EQ(scene.geometries[0].data, uvec4(GEOMETRY_TRIANGLES, GEOMETRY_HAS_NORMALS | GEOMETRY_HAS_UVS, 0u, 0u));
-    EXPECT_EQ(scene.geometries[0].attributes.z, 2u);
-    EXPECT_EQ(scene.geometries[0].ids.y, NONE);
-    EXPECT_EQ(scene.geometries[1].data, uvec4(GEOMETRY_TRIANGLES, 0u, 6u, 4u));
-    EXPECT_EQ(scene.geometries[1].attributes.x, NONE);
+    EXPECT_EQ(scene.geometries[0].kind, GEOMETRY_TRIANGLES);
+    EXPECT_EQ(scene.geometries[0].flags, GEOMETRY_HAS_NORMALS | GEOMETRY_HAS_UVS);
+    EXPECT_EQ(scene.geometries[0].first_index, 0u);
+    EXPECT_EQ(scene.geometries[0].first_vertex, 0u);
+    EXPECT_EQ(scene.geometries[0].primitive_count, 2u);
+    EXPECT_EQ(scene.geometries[0].first_light, NONE);
+    EXPECT_EQ(scene.geometries[1].kind, GEOMETRY_TRIANGLES);
+    EXPECT_EQ(scene.geometries[1].flags, 0u);
+    EXPECT_EQ(scene.geometries[1].first_index, 6u);
+    EXPECT_EQ(scene.geometries[1].first_vertex, 4u);
+    EXPECT_EQ(scene.geometries[1].first_normal, NONE);
     ASSERT_EQ(scene.lights.size(), 1u);
-    EXPECT_EQ(scene.geometries[1].ids.y, 0u);
-    EXPECT_EQ(scene.lights[0].data.x, LIGHT_TRIANGLE);
-    EXPECT_EQ(scene.lights[0].emission, vec4(17.0f, 12.0f, 4.0f, 1.0f));
+    EXPECT_EQ(scene.geometries[1].first_light, 0u);
+    EXPECT_EQ(scene.lights[0].kind, LIGHT_TRIANGLE);
+    EXPECT_EQ(scene.lights[0].emission, Spectrum(17.0f, 12.0f, 4.0f));
+    EXPECT_EQ(scene.lights[0].choice_probability, 1.0f);
     EXPECT_FLOAT_EQ(scene.lights[0].v0.w, 2.0f);
     EXPECT_EQ(scene.positions.size(), 7u * 3u + 4u);
     ASSERT_EQ(scene.materials.size(), 1u);
-    EXPECT_EQ(vec3(scene.materials[0].color0), vec3(0.63f, 0.065f, 0.05f));
+    EXPECT_EQ(scene.materials[0].color0, Spectrum(0.63f, 0.065f, 0.05f));
     EXPECT_EQ(scene.width(), 1024u);
     EXPECT_EQ(text.built.settings.integrator.type, "path");
     EXPECT_EQ(text.built.settings.samples_per_pixel, 64);
@@ -68,9 +75,9 @@ TEST(BuildScene, OrientationFollowsReverseAndHandedness) {
                     "AttributeEnd\nAttributeBegin\nReverseOrientation\nScale 1 1 -1\nShape \"sphere\"\nAttributeEnd\n");
     ASSERT_EQ(text.all_errors(), "");
     const auto& geometries = text.scene().geometries;
-    EXPECT_EQ(geometries[0].data.y, GEOMETRY_FLIP);
-    EXPECT_EQ(geometries[1].data.y, GEOMETRY_FLIP | GEOMETRY_REVERSED);
-    EXPECT_EQ(geometries[2].data.y, GEOMETRY_REVERSED);
+    EXPECT_EQ(geometries[0].flags, GEOMETRY_FLIP);
+    EXPECT_EQ(geometries[1].flags, GEOMETRY_FLIP | GEOMETRY_REVERSED);
+    EXPECT_EQ(geometries[2].flags, GEOMETRY_REVERSED);
     EXPECT_EQ(text.scene().positions[3], -1.0f);
 }
 
@@ -90,10 +97,10 @@ TEST(BuildScene, InfiniteLightsComeFirst) {
     const Scene& scene = text.scene();
     ASSERT_EQ(scene.lights.size(), 3u);
     EXPECT_EQ(scene.record.infinite_lights, 1u);
-    EXPECT_EQ(scene.lights[0].data.x, LIGHT_INFINITE);
-    EXPECT_EQ(scene.lights[scene.geometries[0].ids.y].data.x, LIGHT_TRIANGLE);
+    EXPECT_EQ(scene.lights[0].kind, LIGHT_INFINITE);
+    EXPECT_EQ(scene.lights[scene.geometries[0].first_light].kind, LIGHT_TRIANGLE);
     float sum = 0.0f;
-    for (const LightRecord& light : scene.lights) sum += light.emission.w;
+    for (const LightRecord& light : scene.lights) sum += light.choice_probability;
     EXPECT_NEAR(sum, 1.0f, 1e-6f);
 }
 
@@ -105,9 +112,13 @@ TEST(BuildScene, InstancesShareTheirSet) {
     ASSERT_EQ(text.all_errors(), "");
     const Scene& scene = text.scene();
     ASSERT_EQ(scene.instances.size(), 3u);
-    EXPECT_EQ(scene.instances[0].data, uvec4(0u, 1u, NONE, 0u));
-    EXPECT_EQ(scene.instances[1].data, uvec4(1u, 2u, NONE, 0u));
-    EXPECT_EQ(scene.instances[2].data.w, 1u);
+    for (const uint32_t i : {0u, 1u}) {
+        EXPECT_EQ(scene.instances[i].first_geometry, i);
+        EXPECT_EQ(scene.instances[i].geometry_count, i + 1);
+        EXPECT_EQ(scene.instances[i].root_node, NONE);
+        EXPECT_EQ(scene.instances[i].swaps_handedness, 0u);
+    }
+    EXPECT_EQ(scene.instances[2].swaps_handedness, 1u);
     EXPECT_EQ(scene.instance_sets, (std::vector<uint32_t>{0, 1, 1}));
     EXPECT_EQ(scene.instances[2].transform.to1, vec4(0.0f, -2.0f, 0.0f, 0.0f));
     EXPECT_EQ(scene.instances[2].transform.from1, vec4(0.0f, -0.5f, 0.0f, 0.0f));
@@ -124,8 +135,8 @@ TEST(BuildScene, ExposureAndCrop) {
         "]\nWorldBegin\n");
     ASSERT_EQ(text.all_errors(), "");
     const CameraRecord& camera = text.scene().record.camera;
-    EXPECT_FLOAT_EQ(camera.lens.w, 2.0f);
-    EXPECT_EQ(camera.lens.z, 10.0f);
+    EXPECT_FLOAT_EQ(camera.imaging_ratio, 2.0f);
+    EXPECT_EQ(camera.max_component, 10.0f);
     EXPECT_EQ(text.built.settings.crop, (std::array<int, 4>{50, 0, 100, 10}));
     EXPECT_EQ(camera.screen.x, -2.0f);  // the shorter side is -1 to 1
     BuildOptions options;
@@ -150,11 +161,11 @@ AttributeEnd
 )");
     ASSERT_EQ(text.all_errors(), "");
     const auto& lights = text.scene().lights;
-    const auto luminance = [](vec4 e) { return 0.2126f * e.x + 0.7152f * e.y + 0.0722f * e.z; };
+    const auto luminance = [](Spectrum e) { return 0.2126f * e[0] + 0.7152f * e[1] + 0.0722f * e[2]; };
     EXPECT_NEAR(luminance(lights[0].emission), 1.0f,
                 1e-5f);  // infinite: pi lux from a whole hemisphere is a radiance of 1
     EXPECT_NEAR(luminance(lights[1].emission), 3.0f, 3e-3f);  // a spectrum has luminance one
-    EXPECT_GT(lights[1].emission.x, lights[1].emission.z);    // and 5000 K is warmer than D65
+    EXPECT_GT(lights[1].emission[0], lights[1].emission[2]);  // and 5000 K is warmer than D65
     EXPECT_NEAR(luminance(lights[2].emission), 2.0f, 1e-4f);  // 4 pi lumens from an rgb of 2: as pbrt-v4, twice that
     EXPECT_NEAR(luminance(lights[3].emission), 1.0f / std::numbers::pi_v<float>, 1e-5f);  // 2 pi (1 - cos 60) = pi
     EXPECT_NEAR(luminance(lights[4].emission), 7.0f, 1e-4f);
@@ -172,14 +183,14 @@ NamedMaterial "both"
     ASSERT_EQ(text.all_errors(), "");
     const auto& materials = text.scene().materials;
     ASSERT_EQ(materials.size(), 3u);
-    const MaterialRecord& mix = materials[text.scene().geometries[0].ids.x];
-    EXPECT_EQ(mix.data.x, MATERIAL_MIX);
-    EXPECT_EQ(mix.floats.x, 0.25f);
-    const MaterialRecord& gold = materials[mix.extra.x];
-    EXPECT_EQ(gold.data.x, MATERIAL_CONDUCTOR);
-    EXPECT_EQ(gold.data.y, MATERIAL_REMAP);
-    EXPECT_EQ(gold.floats.x, 0.1f);
-    EXPECT_EQ(gold.floats.y, 0.0f);
+    const MaterialRecord& mix = materials[text.scene().geometries[0].material];
+    EXPECT_EQ(mix.kind, MATERIAL_MIX);
+    EXPECT_EQ(mix.amount, 0.25f);
+    const MaterialRecord& gold = materials[mix.first_material];
+    EXPECT_EQ(gold.kind, MATERIAL_CONDUCTOR);
+    EXPECT_EQ(gold.flags, MATERIAL_REMAP);
+    EXPECT_EQ(gold.roughness_u, 0.1f);
+    EXPECT_EQ(gold.roughness_v, 0.0f);
     // Gold reflects red far better than blue.
     const auto reflectance = [&](int c) {
         const float n = gold.color0[c], k = gold.color1[c];
@@ -188,13 +199,16 @@ NamedMaterial "both"
     EXPECT_GT(reflectance(0), 0.95f);
     EXPECT_NEAR(reflectance(1), 0.78f, 0.02f);
     EXPECT_NEAR(reflectance(2), 0.34f, 0.02f);
-    const MaterialRecord& plastic = materials[mix.extra.y];
-    EXPECT_EQ(plastic.data.y, 0u);
-    EXPECT_EQ(plastic.floats, vec4(0.3f, 0.3f, 1.5f, 0.0f));
-    EXPECT_EQ(plastic.floats2.x, 0.01f);
-    EXPECT_EQ(plastic.extra.x, 10u);
-    EXPECT_EQ(text.scene().effects.mask(),
-              EFFECT_MATERIAL_MIX | EFFECT_CONDUCTOR | EFFECT_ROUGH | EFFECT_ANISOTROPIC | EFFECT_LAYERED_COAT | EFFECT_DIELECTRIC);
+    const MaterialRecord& plastic = materials[mix.second_material];
+    EXPECT_EQ(plastic.flags, 0u);
+    EXPECT_EQ(plastic.roughness_u, 0.3f);
+    EXPECT_EQ(plastic.roughness_v, 0.3f);
+    EXPECT_EQ(plastic.eta, 1.5f);
+    EXPECT_EQ(plastic.g, 0.0f);
+    EXPECT_EQ(plastic.thickness, 0.01f);
+    EXPECT_EQ(plastic.max_depth, 10u);
+    EXPECT_EQ(text.scene().effects.mask(), EFFECT_MATERIAL_MIX | EFFECT_CONDUCTOR | EFFECT_ROUGH | EFFECT_ANISOTROPIC |
+                                               EFFECT_LAYERED_COAT | EFFECT_DIELECTRIC);
 }
 
 // Photons are kept by it (visible_point.h): no less than what any place of the material has.
@@ -227,7 +241,7 @@ MakeNamedMaterial "deep" "string type" "mix" "string materials" [ "nested" "matt
                                       diffuse, 0.0f, 0.0f, 0.3f, 0.3f, diffuse};
     ASSERT_EQ(text.scene().geometries.size(), expected.size());
     for (size_t i = 0; i < expected.size(); ++i)
-        EXPECT_FLOAT_EQ(text.scene().materials[text.scene().geometries[i].ids.x].floats2.w, expected[i]) << i;
+        EXPECT_FLOAT_EQ(text.scene().materials[text.scene().geometries[i].material].roughest_alpha, expected[i]) << i;
 }
 
 TEST(BuildScene, MediaThatAbsorb) {
@@ -251,15 +265,15 @@ Shape "sphere"
     const Scene& scene = text.scene();
     // Empty space, then media as they are used; one that does not absorb is empty space.
     ASSERT_EQ(scene.media.size(), 3u);
-    EXPECT_EQ(scene.media[MEDIUM_VACUUM].sigma_a, vec4(0.0f));
-    EXPECT_EQ(scene.media[1].sigma_a, vec4(2.0f, 4.0f, 6.0f, 0.0f));
-    EXPECT_EQ(scene.media[2].sigma_a, vec4(1.0f, 1.0f, 1.0f, 0.0f));
+    EXPECT_EQ(scene.media[MEDIUM_VACUUM].sigma_a, Spectrum(0.0f));
+    EXPECT_EQ(scene.media[1].sigma_a, Spectrum(2.0f, 4.0f, 6.0f));
+    EXPECT_EQ(scene.media[2].sigma_a, Spectrum(1.0f));
     EXPECT_EQ(scene.record.camera_medium, 1u);
-    EXPECT_EQ(scene.geometries[0].attributes.w, MEDIUM_VACUUM << 16 | 1u);
-    EXPECT_EQ(scene.geometries[1].attributes.w, 2u << 16 | 2u);
-    EXPECT_EQ(scene.geometries[2].attributes.w, MEDIUM_VACUUM);
+    EXPECT_EQ(scene.geometries[0].media, MEDIUM_VACUUM << 16 | 1u);
+    EXPECT_EQ(scene.geometries[1].media, 2u << 16 | 2u);
+    EXPECT_EQ(scene.geometries[2].media, MEDIUM_VACUUM);
     ASSERT_EQ(scene.lights.size(), 2u);
-    for (const LightRecord& light : scene.lights) EXPECT_EQ(light.data.y >> 16, 1u);
+    for (const LightRecord& light : scene.lights) EXPECT_EQ(light.flags >> 16, 1u);
     ASSERT_TRUE(scene.effects.has(EFFECT_MEDIUM));
     for (const EffectRequest& request : scene.effects.requests()) {
         if (request.effect != EFFECT_MEDIUM) continue;

@@ -106,10 +106,10 @@ TEST(LightDistribution, LightsAreChosenByPowerWithAShareForAll) {
     scene.lights.resize(3);
     choose_lights(scene, std::vector<double>{9, 0, 1});
     EXPECT_EQ(scene.record.light_count, 3u);
-    EXPECT_FLOAT_EQ(scene.lights[0].emission.w, (1 - kEvenLightShare) * 0.9 + kEvenLightShare / 2);
-    EXPECT_EQ(scene.lights[1].emission.w, 0);
-    EXPECT_FLOAT_EQ(scene.lights[2].emission.w, (1 - kEvenLightShare) * 0.1 + kEvenLightShare / 2);
-    EXPECT_FLOAT_EQ(scene.lights[0].emission.w + scene.lights[2].emission.w, 1);
+    EXPECT_FLOAT_EQ(scene.lights[0].choice_probability, (1 - kEvenLightShare) * 0.9 + kEvenLightShare / 2);
+    EXPECT_EQ(scene.lights[1].choice_probability, 0);
+    EXPECT_FLOAT_EQ(scene.lights[2].choice_probability, (1 - kEvenLightShare) * 0.1 + kEvenLightShare / 2);
+    EXPECT_FLOAT_EQ(scene.lights[0].choice_probability + scene.lights[2].choice_probability, 1);
 }
 
 // Powers beyond a float's range count by what they are.
@@ -118,10 +118,10 @@ TEST(LightDistribution, LightsOfAnyPowerHaveTheirShare) {
     scene.lights.resize(4);
     choose_lights(scene, std::vector<double>{3e60, 1e60, 1e-60, 0});
     const double even = kEvenLightShare / 3;
-    EXPECT_FLOAT_EQ(scene.lights[0].emission.w, (1 - kEvenLightShare) * 0.75 + even);
-    EXPECT_FLOAT_EQ(scene.lights[1].emission.w, (1 - kEvenLightShare) * 0.25 + even);
-    EXPECT_FLOAT_EQ(scene.lights[2].emission.w, even);
-    EXPECT_EQ(scene.lights[3].emission.w, 0);
+    EXPECT_FLOAT_EQ(scene.lights[0].choice_probability, (1 - kEvenLightShare) * 0.75 + even);
+    EXPECT_FLOAT_EQ(scene.lights[1].choice_probability, (1 - kEvenLightShare) * 0.25 + even);
+    EXPECT_FLOAT_EQ(scene.lights[2].choice_probability, even);
+    EXPECT_EQ(scene.lights[3].choice_probability, 0);
     EXPECT_EQ(scene.record.light_power, std::numeric_limits<float>::max());
 }
 

@@ -26,19 +26,19 @@ const char* kTextured = "Material \"diffuse\" \"texture reflectance\" \"t\"";
 std::vector<TextureOp> program_of(const BuiltText& text) {
     const Scene& scene = text.scene();
     std::vector<TextureOp> ops;
-    if (text.all_errors() != "" || scene.materials.empty() || scene.materials[0].textures.x == NONE) {
+    if (text.all_errors() != "" || scene.materials.empty() || scene.materials[0].color0_texture == NONE) {
         ADD_FAILURE() << "no program; " << text.all_errors();
         return {TextureOp{}};
     }
-    for (size_t i = scene.materials[0].textures.x; i < scene.texture_ops.size(); ++i) {
+    for (size_t i = scene.materials[0].color0_texture; i < scene.texture_ops.size(); ++i) {
         ops.push_back(scene.texture_ops[i]);
-        if (ops.back().data.y & 1u) break;
+        if (ops.back().flags & 1u) break;
     }
     return ops;
 }
 std::vector<uint32_t> kinds(const std::vector<TextureOp>& ops) {
     std::vector<uint32_t> result;
-    for (const TextureOp& op : ops) result.push_back(op.data.x);
+    for (const TextureOp& op : ops) result.push_back(op.operation);
     return result;
 }
 using Kinds = std::vector<uint32_t>;
@@ -57,7 +57,7 @@ TEST(TextureBuilder, CheckerboardOfConstants) {
     EXPECT_EQ(vec3(ops[0].a), vec3(0.8f, 0.7f, 0.6f));
     EXPECT_EQ(vec3(ops[1].a), vec3(0.0f));
     EXPECT_EQ(ops[2].m0, vec4(8, 1, 0, 0.5f));
-    EXPECT_EQ(ops[2].data.y, MAPPING_UV << 8 | 1u);
+    EXPECT_EQ(ops[2].flags, MAPPING_UV << 8 | 1u);
     EXPECT_EQ(text.scene().effects.mask() & (EFFECT_TEXTURES | EFFECT_IMAGES | EFFECT_NOISE), EFFECT_TEXTURES);
 }
 
@@ -65,7 +65,7 @@ TEST(TextureBuilder, TransformsReachMappings) {
     const std::string before = "Translate 10 0 0\nScale 2 2 2\n";
     const BuiltText space =
         build_textured(before + "Texture \"t\" \"spectrum\" \"checkerboard\" \"integer dimension\" 3", kTextured);
-    EXPECT_EQ(program_of(space).back().data.y >> 8, MAPPING_SPACE);
+    EXPECT_EQ(program_of(space).back().flags >> 8, MAPPING_SPACE);
     EXPECT_EQ(program_of(space).back().m0, vec4(0.5f, 0, 0, -5));
     const BuiltText planar = build_textured(before +
                                                 "Texture \"t\" \"spectrum\" \"dots\" \"string mapping\" \"planar\" "
@@ -97,8 +97,8 @@ TEST(TextureBuilder, FloatAndSpectrumNamesAreApart) {
         std::string(kTextured) + " \"texture displacement\" \"t\"");
     ASSERT_EQ(text.all_errors(), "");
     const MaterialRecord& m = text.scene().materials[0];
-    EXPECT_EQ(text.scene().texture_ops[m.textures.x].a.y, 0.0f);
-    EXPECT_EQ(text.scene().texture_ops[m.data.z].a.y, 0.25f);
+    EXPECT_EQ(text.scene().texture_ops[m.color0_texture].a.y, 0.0f);
+    EXPECT_EQ(text.scene().texture_ops[m.bump_texture].a.y, 0.25f);
 }
 
 TEST(TextureBuilder, UnusedTexturesCostNothingButAreChecked) {
@@ -172,9 +172,9 @@ TEST(TextureBuilder, OneFileIsLoadedOnce) {
     ASSERT_EQ(text.all_errors(), "");
     const Scene& scene = text.scene();
     ASSERT_EQ(scene.images.size(), 3u);
-    EXPECT_EQ(scene.images[0].data.x, scene.images[1].data.x) << "the same texels";
-    EXPECT_NE(scene.images[0].decode.x, scene.images[2].decode.x) << "another encoding";
-    EXPECT_EQ(scene.images[1].data.w, TEXEL_RGBA8 | WRAP_CLAMP << 8 | FILTER_BILINEAR << 16);
+    EXPECT_EQ(scene.images[0].first_texel, scene.images[1].first_texel) << "the same texels";
+    EXPECT_NE(scene.images[0].decoding, scene.images[2].decoding) << "another encoding";
+    EXPECT_EQ(scene.images[1].format, TEXEL_RGBA8 | WRAP_CLAMP << 8 | FILTER_BILINEAR << 16);
     EXPECT_EQ(scene.texels.size(), 2u * (256 + 4));
     ASSERT_EQ(scene.notes.size(), 1u);
     EXPECT_NE(scene.notes[0].find("EWA"), std::string::npos);
@@ -207,8 +207,8 @@ TEST_P(StoredImage, KeepsItsValues) {
             Diagnostics diagnostics(sources);
             ImageStore store(scene, diagnostics);
             const uint32_t index = store.add(image, {kind, 2.5f}, {WRAP_CLAMP, FILTER_POINT}, "test", {});
-            EXPECT_EQ(scene.images[index].data.y, 7u);
-            EXPECT_EQ(scene.images[index].data.z, 5u);
+            EXPECT_EQ(scene.images[index].width, 7u);
+            EXPECT_EQ(scene.images[index].height, 5u);
             const std::vector<glm::vec3> pixels = store.pixels(index);
             glm::dvec3 sum(0);
             for (size_t p = 0; p < pixels.size(); ++p)

@@ -102,14 +102,14 @@ void EmbreeScene::attach_geometries(RTCScene target, uint32_t set) {
 
 EmbreeGeometry EmbreeScene::make_geometry(uint32_t index) {
     const kernel::GeometryRecord& record = scene_.geometries[index];
-    const uint32_t count = record.attributes.z;
-    if (record.data.x == kernel::GEOMETRY_TRIANGLES) {
+    const uint32_t count = record.primitive_count;
+    if (record.kind == kernel::GEOMETRY_TRIANGLES) {
         EmbreeGeometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
-        const size_t vertices = scene_.positions.size() / 3 - record.data.w;
+        const size_t vertices = scene_.positions.size() / 3 - record.first_vertex;
         rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                   scene_.positions.data(), size_t(record.data.w) * 12, 12, vertices);
+                                   scene_.positions.data(), size_t(record.first_vertex) * 12, 12, vertices);
         rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, scene_.indices.data(),
-                                   size_t(record.data.z) * 4, 12, count);
+                                   size_t(record.first_index) * 4, 12, count);
         return geometry;
     }
     EmbreeGeometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER));

@@ -26,7 +26,7 @@ bool primitive_hit(void* const* scene_buffers, uint32_t geometry, uint32_t primi
                    const float direction[3], float t_max, float& t) {
     kernel::PrimitiveKernel<kernel::kAllEffects> code{scene_buffers, {}, nullptr, nullptr};
     const glm::vec3 o(origin[0], origin[1], origin[2]), d(direction[0], direction[1], direction[2]);
-    if (code.geometries[geometry].data.x == kernel::GEOMETRY_BILINEAR) {
+    if (code.geometries[geometry].kind == kernel::GEOMETRY_BILINEAR) {
         glm::vec2 uv;
         return code.bilinear_hit(geometry, primitive, o, d, t_max, t, uv);
     }
@@ -41,24 +41,24 @@ PrimitiveBounds primitive_bounds(const Scene& scene, uint32_t geometry, uint32_t
         bounds.low = glm::min(bounds.low, p);
         bounds.high = glm::max(bounds.high, p);
     };
-    if (record.data.x == kernel::GEOMETRY_BILINEAR) {
+    if (record.kind == kernel::GEOMETRY_BILINEAR) {
         for (uint32_t i = 0; i < 4; ++i) {
-            const float* p =
-                &scene.positions[3 * size_t(record.data.w + scene.indices[record.data.z + 4 * primitive + i])];
+            const float* p = &scene.positions[3 * size_t(record.first_vertex +
+                                                         scene.indices[record.first_index + 4 * primitive + i])];
             extend({p[0], p[1], p[2]});
         }
     } else {
         // The full quadric's box: sweeps cut by phimax keep it, which costs a few rays and no correctness.
         glm::vec3 low, high;
         const glm::vec4& q = record.params;
-        if (record.data.x == kernel::GEOMETRY_DISK) {
+        if (record.kind == kernel::GEOMETRY_DISK) {
             low = {-q.y, -q.y, q.x};
             high = {q.y, q.y, q.x};
         } else {
             low = {-q.x, -q.x, q.y};
             high = {q.x, q.x, q.z};
         }
-        const kernel::TransformRecord& m = scene.transforms[record.ids.w];
+        const kernel::TransformRecord& m = scene.transforms[record.transform];
         for (int corner = 0; corner < 8; ++corner) {
             const glm::vec4 p(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z,
                               1.0f);

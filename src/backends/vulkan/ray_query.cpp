@@ -54,15 +54,15 @@ AccelerationStructure AccelerationStructures::build_geometry(StructureBuilder& b
                                                              uint32_t index) {
     AccelerationStructure result;
     const kernel::GeometryRecord& record = scene.geometries[index];
-    if (record.data.x == kernel::GEOMETRY_TRIANGLES) {
-        const uint32_t count = record.attributes.z;
+    if (record.kind == kernel::GEOMETRY_TRIANGLES) {
+        const uint32_t count = record.primitive_count;
         if (count == 0) return result;
-        const uint32_t* indices = &scene.indices[record.data.z];
+        const uint32_t* indices = &scene.indices[record.first_index];
         const uint32_t vertices = *std::max_element(indices, indices + 3 * size_t(count)) + 1;
         const auto index_data =
             builder.input(indices, 3 * size_t(count) * sizeof(uint32_t), "triangles for the acceleration structure");
         const auto vertex_data =
-            builder.input(&scene.positions[3 * size_t(record.data.w)], 3 * size_t(vertices) * sizeof(float),
+            builder.input(&scene.positions[3 * size_t(record.first_vertex)], 3 * size_t(vertices) * sizeof(float),
                           "vertices for the acceleration structure");
         vk::AccelerationStructureGeometryTrianglesDataKHR triangles;
         triangles.vertexFormat = vk::Format::eR32G32B32Sfloat;
@@ -78,7 +78,7 @@ AccelerationStructure AccelerationStructures::build_geometry(StructureBuilder& b
         builder.build(result, vk::AccelerationStructureTypeKHR::eBottomLevel, geometry, count);
         return result;
     }
-    const uint32_t count = record.data.x == kernel::GEOMETRY_BILINEAR ? record.attributes.z : 1;
+    const uint32_t count = record.kind == kernel::GEOMETRY_BILINEAR ? record.primitive_count : 1;
     std::vector<vk::AabbPositionsKHR> boxes;
     for (uint32_t p = 0; p < count; ++p) {
         const PrimitiveBounds b = primitive_bounds(scene, index, p);

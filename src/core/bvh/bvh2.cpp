@@ -87,7 +87,7 @@ Box box_of(const RTCBuildPrimitive& item) {
 }
 
 vec3 vertex(const Scene& scene, const kernel::GeometryRecord& geometry, uint32_t corner) {
-    const size_t i = 3 * (size_t(geometry.data.w) + scene.indices[size_t(geometry.data.z) + corner]);
+    const size_t i = 3 * (size_t(geometry.first_vertex) + scene.indices[size_t(geometry.first_index) + corner]);
     return {scene.positions[i], scene.positions[i + 1], scene.positions[i + 2]};
 }
 
@@ -156,13 +156,13 @@ class Builder {
         std::vector<RTCBuildPrimitive> items;
         size_t count = 0;
         for (uint32_t g = 0; g < set.geometry_count; ++g)
-            count += scene_.geometries[set.first_geometry + g].attributes.z;
+            count += scene_.geometries[set.first_geometry + g].primitive_count;
         items.reserve(count + 16);
         for (uint32_t g = set.first_geometry; g < set.first_geometry + set.geometry_count; ++g) {
             const kernel::GeometryRecord& geometry = scene_.geometries[g];
-            const bool triangles = geometry.data.x == kernel::GEOMETRY_TRIANGLES;
-            const bool many = triangles || geometry.data.x == kernel::GEOMETRY_BILINEAR;
-            for (uint32_t p = 0; p < (many ? geometry.attributes.z : 1u); ++p) {
+            const bool triangles = geometry.kind == kernel::GEOMETRY_TRIANGLES;
+            const bool many = triangles || geometry.kind == kernel::GEOMETRY_BILINEAR;
+            for (uint32_t p = 0; p < (many ? geometry.primitive_count : 1u); ++p) {
                 Box box;
                 if (triangles) {
                     for (uint32_t corner = 0; corner < 3; ++corner)
@@ -281,11 +281,11 @@ class Builder {
             const kernel::GeometryRecord& geometry = scene_.geometries[item.geomID];
             vec3 v[3] = {};
             uint32_t kind = kernel::BVH_QUADRIC;
-            if (geometry.data.x == kernel::GEOMETRY_TRIANGLES) {
+            if (geometry.kind == kernel::GEOMETRY_TRIANGLES) {
                 kind = kernel::BVH_TRIANGLE;
                 for (uint32_t corner = 0; corner < 3; ++corner)
                     v[corner] = vertex(scene_, geometry, 3 * item.primID + corner);
-            } else if (geometry.data.x == kernel::GEOMETRY_BILINEAR) {
+            } else if (geometry.kind == kernel::GEOMETRY_BILINEAR) {
                 kind = kernel::BVH_BILINEAR;
             }
             result_.triangles.emplace_back(v[0], std::bit_cast<float>(item.geomID));
@@ -313,7 +313,7 @@ Bvh2 build_bvh2(const Scene& scene) {
 Bvh2Scene::Bvh2Scene(const Scene& scene)
     : scene_(scene), bvh_(build_bvh2(scene)), record_(scene.record), instances_(scene.instances) {
     record_.root_node = bvh_.roots[0];
-    for (size_t i = 0; i < instances_.size(); ++i) instances_[i].data.z = bvh_.roots[i];
+    for (size_t i = 0; i < instances_.size(); ++i) instances_[i].root_node = bvh_.roots[i];
 }
 
 std::vector<SceneBuffer> Bvh2Scene::buffers() const {

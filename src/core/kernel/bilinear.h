@@ -11,7 +11,7 @@ struct Patch {
 
 // The index, relative to the geometry's first vertex, of each corner: p00, p10, p01, p11.
 FN uvec4 patch_corners(IN(GeometryRecord) g, uint primitive) {
-    uint first = g.data.z + 4u * primitive;
+    uint first = g.first_index + 4u * primitive;
     return uvec4(indices[first], indices[first + 1u], indices[first + 2u], indices[first + 3u]);
 }
 
@@ -19,10 +19,10 @@ FN Patch load_patch(uint geometry, uint primitive) {
     GeometryRecord g = geometries[geometry];
     uvec4 corner = patch_corners(g, primitive);
     Patch patch_;
-    patch_.p00 = vertex_position(g.data.w + corner.x);
-    patch_.p10 = vertex_position(g.data.w + corner.y);
-    patch_.p01 = vertex_position(g.data.w + corner.z);
-    patch_.p11 = vertex_position(g.data.w + corner.w);
+    patch_.p00 = vertex_position(g.first_vertex + corner.x);
+    patch_.p10 = vertex_position(g.first_vertex + corner.y);
+    patch_.p01 = vertex_position(g.first_vertex + corner.z);
+    patch_.p11 = vertex_position(g.first_vertex + corner.w);
     return patch_;
 }
 
@@ -123,7 +123,7 @@ FN void bilinear_fill(uint geometry, uint primitive, vec2 uv, INOUT(Surface) s) 
     // Change of the normal: derivative of the unit cross product, the mixed derivative being the patch's twist.
     s.dndu = vec3(0.0f);
     s.dndv = vec3(0.0f);
-    bool flip = (g.data.y & GEOMETRY_FLIP) != 0u;
+    bool flip = (g.flags & GEOMETRY_FLIP) != 0u;
     float sign = flip ? -1.0f : 1.0f;
     if (HAS(EFFECT_BUMP) && normal_length > 0.0f) {
         vec3 twist = (b.p00 - b.p10) + (b.p11 - b.p01);
@@ -138,11 +138,11 @@ FN void bilinear_fill(uint geometry, uint primitive, vec2 uv, INOUT(Surface) s) 
     float dv_ds = 0.0f;
     float du_dt = 0.0f;
     float dv_dt = 1.0f;
-    if ((g.data.y & GEOMETRY_HAS_UVS) != 0u) {
-        vec2 st00 = vertex_uv(g.attributes.y + corner.x);
-        vec2 st10 = vertex_uv(g.attributes.y + corner.y);
-        vec2 st01 = vertex_uv(g.attributes.y + corner.z);
-        vec2 st11 = vertex_uv(g.attributes.y + corner.w);
+    if ((g.flags & GEOMETRY_HAS_UVS) != 0u) {
+        vec2 st00 = vertex_uv(g.first_uv + corner.x);
+        vec2 st10 = vertex_uv(g.first_uv + corner.y);
+        vec2 st01 = vertex_uv(g.first_uv + corner.z);
+        vec2 st11 = vertex_uv(g.first_uv + corner.w);
         vec2 at_u0 = (1.0f - uv.y) * st00 + uv.y * st01;
         vec2 at_u1 = (1.0f - uv.y) * st10 + uv.y * st11;
         s.uv = (1.0f - uv.x) * at_u0 + uv.x * at_u1;
@@ -156,11 +156,11 @@ FN void bilinear_fill(uint geometry, uint primitive, vec2 uv, INOUT(Surface) s) 
             dv_dt = dst_du.x / determinant;
         }
     }
-    if (HAS(EFFECT_SMOOTH_NORMALS) && (g.data.y & GEOMETRY_HAS_NORMALS) != 0u) {
-        vec3 n00 = vertex_normal(g.attributes.x + corner.x);
-        vec3 n10 = vertex_normal(g.attributes.x + corner.y);
-        vec3 n01 = vertex_normal(g.attributes.x + corner.z);
-        vec3 n11 = vertex_normal(g.attributes.x + corner.w);
+    if (HAS(EFFECT_SMOOTH_NORMALS) && (g.flags & GEOMETRY_HAS_NORMALS) != 0u) {
+        vec3 n00 = vertex_normal(g.first_normal + corner.x);
+        vec3 n10 = vertex_normal(g.first_normal + corner.y);
+        vec3 n01 = vertex_normal(g.first_normal + corner.z);
+        vec3 n11 = vertex_normal(g.first_normal + corner.w);
         vec3 ns = lerp3_of(uv.x, lerp3_of(uv.y, n00, n01), lerp3_of(uv.y, n10, n11));
         float ns_length = length_of(ns);
         if (ns_length > 0.0f) {

@@ -20,9 +20,9 @@ CONST uint VISIBLE_SPLIT = 2u;   // a smooth coat over something rough: one or t
 struct Bsdf {
     uint kind;        // MATERIAL_*, never MATERIAL_MIX
     uint flags;       // MATERIAL_ENERGY_COMPENSATION, MATERIAL_EXACT_COAT
-    Spectrum color0;      // diffuse, diffuse transmission, coated diffuse: reflectance; conductors: n of n + ik
-    Spectrum color1;      // diffuse transmission: transmittance; conductors: k
-    Spectrum albedo;      // coats: single-scattering albedo of the medium between the layers
+    Spectrum color0;  // diffuse, diffuse transmission, coated diffuse: reflectance; conductors: n of n + ik
+    Spectrum color1;  // diffuse transmission: transmittance; conductors: k
+    Spectrum albedo;  // coats: single-scattering albedo of the medium between the layers
     vec2 alpha;       // roughness; of coats: of the interface. From ggx_alpha: zero where it is smooth
     vec2 alpha_base;  // coated conductor: roughness of the metal
     float eta;        // dielectrics and coats: index on the side of -z over that of +z
@@ -65,7 +65,7 @@ FN float bounded_eta(float eta) { return eta > 0.0f ? clamp(eta, 0.01f, 100.0f) 
 FN vec2 roughness_alpha(float u, float v, bool remap) { return remap ? vec2(safe_sqrt(u), safe_sqrt(v)) : vec2(u, v); }
 // The roughness of a record, remapped where it asks for that, and as the GGX functions need it.
 FN vec2 record_roughness(IN(MaterialRecord) m) {
-    return roughness_alpha(m.floats.x, m.floats.y, (m.data.y & MATERIAL_REMAP) != 0u);
+    return roughness_alpha(m.roughness_u, m.roughness_v, (m.flags & MATERIAL_REMAP) != 0u);
 }
 FN vec2 record_alpha(IN(MaterialRecord) m) {
     vec2 alpha = record_roughness(m);
@@ -76,7 +76,7 @@ FN vec2 record_alpha(IN(MaterialRecord) m) {
 
 struct BsdfSample {
     vec3 wi;
-    Spectrum f;                    // without the cosine; for a specular lobe f |cos| / pdf is the weight
+    Spectrum f;                // without the cosine; for a specular lobe f |cos| / pdf is the weight
     float pdf;                 // 1/sr; for a specular lobe the probability of choosing it
     float eta;                 // relative index along a refraction (transmitted over incident side), else 1
     uint lobe;                 // LOBE_REFLECTION or LOBE_TRANSMISSION, and LOBE_DIFFUSE, LOBE_GLOSSY or LOBE_SPECULAR

@@ -10,16 +10,16 @@ FN Ray camera_ray(vec2 raster, vec2 u_lens) {
     vec3 direction = vec3(0.0f, 0.0f, 1.0f);
     vec3 on_screen =
         vec3(camera.screen.x + raster.x * camera.screen.z, camera.screen.y + raster.y * camera.screen.w, 1.0f);
-    if (camera.data.x == CAMERA_ORTHOGRAPHIC) {
+    if (camera.kind == CAMERA_ORTHOGRAPHIC) {
         origin = vec3(on_screen.x, on_screen.y, 0.0f);
     } else {
         direction = on_screen;
     }
-    if (CALLED_FOR(EFFECT_DEPTH_OF_FIELD) && camera.lens.x > 0.0f) {
+    if (CALLED_FOR(EFFECT_DEPTH_OF_FIELD) && camera.lens_radius > 0.0f) {
         // All rays of one film point meet on the plane of focus (direction.z is 1).
-        vec3 focus = origin + direction * camera.lens.y;
+        vec3 focus = origin + direction * camera.focal_distance;
         vec2 lens = sample_concentric_disk(u_lens);
-        origin = origin + vec3(camera.lens.x * lens.x, camera.lens.x * lens.y, 0.0f);
+        origin = origin + vec3(camera.lens_radius * lens.x, camera.lens_radius * lens.y, 0.0f);
         direction = focus - origin;
     }
     Ray ray;
@@ -59,16 +59,16 @@ FN float sample_filter_table(uint table, uint count, float radius, float u, INOU
 FN vec2 pixel_filter_sample(vec2 u, OUT(float) weight) {
     CameraRecord camera = scene[0].camera;
     weight = 1.0f;
-    if (camera.data.y == PIXEL_FILTER_BOX) {
-        return vec2((2.0f * u.x - 1.0f) * camera.filtering.x, (2.0f * u.y - 1.0f) * camera.filtering.y);
+    if (camera.filter_kind == PIXEL_FILTER_BOX) {
+        return vec2((2.0f * u.x - 1.0f) * camera.filter_radius_x, (2.0f * u.y - 1.0f) * camera.filter_radius_y);
     }
-    if (camera.data.y == PIXEL_FILTER_TRIANGLE)
-        return vec2(sample_tent(u.x, camera.filtering.x), sample_tent(u.y, camera.filtering.y));
-    uint count = camera.data.w;
-    uint table_x = camera.data.z;
+    if (camera.filter_kind == PIXEL_FILTER_TRIANGLE)
+        return vec2(sample_tent(u.x, camera.filter_radius_x), sample_tent(u.y, camera.filter_radius_y));
+    uint count = camera.filter_intervals;
+    uint table_x = camera.filter_tables;
     uint table_y = table_x + 3u * count + 3u;
-    float x = sample_filter_table(table_x, count, camera.filtering.x, u.x, weight);
-    float y = sample_filter_table(table_y, count, camera.filtering.y, u.y, weight);
+    float x = sample_filter_table(table_x, count, camera.filter_radius_x, u.x, weight);
+    float y = sample_filter_table(table_y, count, camera.filter_radius_y, u.y, weight);
     weight = weight * (filter_number(table_x + 2u * count + 2u) * filter_number(table_y + 2u * count + 2u));
     return vec2(x, y);
 }

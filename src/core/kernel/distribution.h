@@ -39,7 +39,7 @@ FN float place_in_interval(uint at, uint number, float fraction) {
                ONE_MINUS_EPSILON);
 }
 
-// A piecewise constant density on the unit square (layout.h, LightRecord.ids of image lights): a texel, and a place on the
+// A piecewise constant density on the unit square (layout.h, LightRecord.distribution): a texel, and a place on the
 // square that is uniform in it.
 struct TexelSample {
     uint x;

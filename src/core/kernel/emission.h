@@ -32,14 +32,14 @@ FN bool emit_from_area(uint index, float u_side, vec2 u_place, vec2 u_direction,
     if (!sample_light_area(light, u_place, place)) return false;
     vec3 local = sample_cosine_hemisphere(u_direction);
     float sides = 1.0f;
-    if ((light.data.y & LIGHT_TWO_SIDED) != 0u) {
+    if ((light.flags & LIGHT_TWO_SIDED) != 0u) {
         sides = 2.0f;
         if (u_side < 0.5f) local.z = -local.z;
     }
     e.direction = unit(to_world(frame_from_z(area_emission_side(index, place.ng)), local));
     Spectrum radiance = area_emission(index, place.position, place.ng, place.uv, e.direction);
     if (HAS(EFFECT_ALPHA)) radiance = radiance * light_alpha(light, place.position, place.ng, place.uv);
-    e.power = radiance * (PI * sides / (place.pdf * light.emission.w));
+    e.power = radiance * (PI * sides / (place.pdf * light.choice_probability));
     e.origin = offset_origin(place.position, place.error, place.ng, e.direction);
     e.medium = light_medium(index, place.ng, e.direction);
     return true;
@@ -48,13 +48,13 @@ FN bool emit_from_area(uint index, float u_side, vec2 u_place, vec2 u_direction,
 FN bool emit_from_point(uint index, vec2 u_place, vec2 u_direction, INOUT(Emission) e) {
     LightRecord light = lights[index];
     float pdf = pdf_uniform_sphere();
-    if (light.data.x == LIGHT_SPOT) {
+    if (light.kind == LIGHT_SPOT) {
         float one_minus_cos = 1.0f - light.v2.w;
         e.direction = to_world(frame_from_z(vec3(light.v1)), sample_uniform_cone(u_direction, one_minus_cos));
         pdf = pdf_uniform_cone(one_minus_cos);
-    } else if (HAS(EFFECT_PROJECTION_LIGHTS) && light.data.x == LIGHT_PROJECTION) {
+    } else if (HAS(EFFECT_PROJECTION_LIGHTS) && light.kind == LIGHT_PROJECTION) {
         // Uniform over the picture at z = 1, which cos^3 turns into solid angle.
-        TransformRecord m = transforms[light.data.w];
+        TransformRecord m = transforms[light.transform];
         vec2 p = vec2(lerp_of(u_direction.x, light.v2.x, light.v2.z), lerp_of(u_direction.y, light.v2.y, light.v2.w));
         float d2 = p.x * p.x + p.y * p.y + 1.0f;
         e.direction = unit(transform_vector(m.to0, m.to1, m.to2, vec3(p.x, p.y, 1.0f)));
@@ -65,7 +65,7 @@ FN bool emit_from_point(uint index, vec2 u_place, vec2 u_direction, INOUT(Emissi
     }
     e.direction = unit(e.direction);
     e.origin = vec3(light.v0) + point_offset(vec3(light.v0), e.direction) * e.direction;
-    e.power = point_light_intensity(light, e.direction) / (pdf * light.emission.w);
+    e.power = point_light_intensity(light, e.direction) / (pdf * light.choice_probability);
     e.medium = light_medium(index, e.direction, e.direction);
     return true;
 }
@@ -81,7 +81,7 @@ FN bool emit_photon(uint u_choice, float u_side, vec2 u_place, uvec2 u_direction
     e.medium = MEDIUM_VACUUM;
     if (count == 0u) return false;
     e.light = count == 1u ? 0u : find_interval(scene[0].light_cdf, count, cdf_number(u_choice));
-    uint kind = lights[e.light].data.x;
+    uint kind = lights[e.light].kind;
     bool found = false;
     if (HAS(EFFECT_AREA_LIGHTS) && kind <= LIGHT_GEOMETRY) {
         found = emit_from_area(e.light, u_side, u_place, unit_floats(u_direction), e);
@@ -99,7 +99,7 @@ FN bool emit_photon(uint u_choice, float u_side, vec2 u_place, uvec2 u_direction
         LightRecord light = lights[e.light];
         e.direction = -vec3(light.v0);
         e.origin = distant_origin(vec3(light.v0), u_place);
-        e.power = spectrum_of(light.emission) * (distant_area() / light.emission.w);
+        e.power = light.emission * (distant_area() / light.choice_probability);
         found = true;
     } else if (HAS(EFFECT_POINT_LIGHTS) || HAS(EFFECT_PROJECTION_LIGHTS)) {
         found = emit_from_point(e.light, u_place, unit_floats(u_direction), e);

@@ -20,21 +20,24 @@ FN vec2 environment_st(IN(TransformRecord) m, vec3 direction) {
 
 // The texel that a direction falls into.
 FN uvec2 environment_texel(uint light, IN(TransformRecord) m, vec3 direction) {
-    uvec4 ids = lights[light].ids;
+    uint image = lights[light].image;
+    uint width = images[image].width;
+    uint height = images[image].height;
     vec2 st = environment_st(m, direction);
-    return uvec2(min(uint(max(st.x, 0.0f) * float(ids.y)), ids.y - 1u),
-                 min(uint(max(st.y, 0.0f) * float(ids.z)), ids.z - 1u));
+    return uvec2(min(uint(max(st.x, 0.0f) * float(width)), width - 1u),
+                 min(uint(max(st.y, 0.0f) * float(height)), height - 1u));
 }
 
 FN Spectrum infinite_image_radiance(uint light, uvec2 texel) {
-    ImageRecord image = images[lights[light].data.z];
-    return spectrum_of(lights[light].emission) * spectrum_of_rgb(image_texel(image, int(texel.x), int(texel.y)));
+    ImageRecord image = images[lights[light].image];
+    return lights[light].emission * spectrum_of_rgb(image_texel(image, int(texel.x), int(texel.y)));
 }
 
 // Without the probability of choosing the light.
 FN float infinite_image_pdf(uint light, IN(TransformRecord) m, vec3 direction, uvec2 texel) {
-    uvec4 ids = lights[light].ids;
-    return pdf_image_texel(ids.x, ids.y, ids.z, texel.x, texel.y) * INV_FOUR_PI * solid_angle_stretch(m, direction);
+    uint image = lights[light].image;
+    return pdf_image_texel(lights[light].distribution, images[image].width, images[image].height, texel.x, texel.y) *
+           INV_FOUR_PI * solid_angle_stretch(m, direction);
 }
 
 // Radiance from the infinite lights along a ray that leaves the scene in `direction` (unit length).
@@ -42,11 +45,11 @@ FN Spectrum environment_radiance(vec3 direction) {
     Spectrum sum = Spectrum(0.0f);
     if (!HAS(EFFECT_ENVIRONMENT)) return sum;
     for (uint light = 0u; light < scene[0].infinite_lights; ++light) {
-        if (HAS(EFFECT_ENVIRONMENT_IMAGE) && lights[light].data.x == LIGHT_INFINITE_IMAGE) {
-            TransformRecord m = transforms[lights[light].data.w];
+        if (HAS(EFFECT_ENVIRONMENT_IMAGE) && lights[light].kind == LIGHT_INFINITE_IMAGE) {
+            TransformRecord m = transforms[lights[light].transform];
             sum = sum + infinite_image_radiance(light, environment_texel(light, m, direction));
         } else {
-            sum = sum + spectrum_of(lights[light].emission);
+            sum = sum + lights[light].emission;
         }
     }
     return sum;
@@ -58,11 +61,11 @@ FN float environment_pdf(vec3 direction) {
     if (!HAS(EFFECT_ENVIRONMENT)) return sum;
     for (uint light = 0u; light < scene[0].infinite_lights; ++light) {
         float pdf = pdf_uniform_sphere();
-        if (HAS(EFFECT_ENVIRONMENT_IMAGE) && lights[light].data.x == LIGHT_INFINITE_IMAGE) {
-            TransformRecord m = transforms[lights[light].data.w];
+        if (HAS(EFFECT_ENVIRONMENT_IMAGE) && lights[light].kind == LIGHT_INFINITE_IMAGE) {
+            TransformRecord m = transforms[lights[light].transform];
             pdf = infinite_image_pdf(light, m, direction, environment_texel(light, m, direction));
         }
-        sum = sum + lights[light].emission.w * pdf;
+        sum = sum + lights[light].choice_probability * pdf;
     }
     return sum;
 }
@@ -70,17 +73,18 @@ FN float environment_pdf(vec3 direction) {
 // Samples one infinite light. Where there are several, the result is what all of them send from that direction, with the
 // density of the mixture: that is also what a ray that finds the direction by chance sees and is weighted by.
 FN bool environment_sample(uint light, uvec2 u, OUT(vec3) direction, OUT(Spectrum) radiance, OUT(float) pdf) {
-    radiance = spectrum_of(lights[light].emission);
-    pdf = pdf_uniform_sphere() * lights[light].emission.w;
-    if (HAS(EFFECT_ENVIRONMENT_IMAGE) && lights[light].data.x == LIGHT_INFINITE_IMAGE) {
-        TransformRecord m = transforms[lights[light].data.w];
-        uvec4 ids = lights[light].ids;
-        TexelSample s = sample_image_distribution(ids.x, ids.y, ids.z, u);
+    radiance = lights[light].emission;
+    pdf = pdf_uniform_sphere() * lights[light].choice_probability;
+    if (HAS(EFFECT_ENVIRONMENT_IMAGE) && lights[light].kind == LIGHT_INFINITE_IMAGE) {
+        TransformRecord m = transforms[lights[light].transform];
+        uint image = lights[light].image;
+        TexelSample s =
+            sample_image_distribution(lights[light].distribution, images[image].width, images[image].height, u);
         direction = unit(transform_vector(m.to0, m.to1, m.to2, direction_from_square(s.st)));
         // Radiance and density are those of the texel that was chosen: the direction may round into the next one.
         uvec2 texel = uvec2(s.x, s.y);
         radiance = infinite_image_radiance(light, texel);
-        pdf = infinite_image_pdf(light, m, direction, texel) * lights[light].emission.w;
+        pdf = infinite_image_pdf(light, m, direction, texel) * lights[light].choice_probability;
     } else {
         direction = sample_uniform_sphere(unit_floats(u));
     }

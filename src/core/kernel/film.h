@@ -81,9 +81,9 @@ FN void film_add_first_hit(INOUT(FilmPixel) p, IN(FirstHit) f) {
 
 // What the film makes of radiance before it is added: the sensor's imaging ratio and the clamp of `maxcomponentvalue`.
 FN vec3 film_sensor(Spectrum radiance) {
-    vec3 value = rgb_of(radiance) * scene[0].camera.lens.w;
+    vec3 value = rgb_of(radiance) * scene[0].camera.imaging_ratio;
     float largest = max_component(value);
-    float limit = scene[0].camera.lens.z;
+    float limit = scene[0].camera.max_component;
     return limit > 0.0f && largest > limit ? value * (limit / largest) : value;
 }
 
@@ -102,7 +102,7 @@ FN CameraSample camera_sample(IN(FilmWindow) w, uvec2 pixel, uint i) {
     uint x = w.x + pixel.x;
     uint y = w.y + pixel.y;
     s.pass = w.first_sample + i;
-    s.numbers = sampler_begin(y * scene[0].camera.film.x + x, s.pass, w.seed, w.sampler_kind);
+    s.numbers = sampler_begin(y * scene[0].camera.resolution_x + x, s.pass, w.seed, w.sampler_kind);
     vec2 offset = pixel_filter_sample(sample_2d_at(s.numbers, 0u), s.weight);
     vec2 u_lens = vec2(0.5f);
     if (CALLED_FOR(EFFECT_DEPTH_OF_FIELD)) u_lens = sample_2d_at(s.numbers, 2u);

@@ -8,14 +8,14 @@ CONST uint MAX_PASSED_SURFACES = 100000u;
 
 // The triangle's point that the ray meets (Möller and Trumbore 1997 for the barycentrics), in the geometry set's space.
 FN void triangle_surface(uint geometry, uint primitive, vec3 o, vec3 d, INOUT(Surface) s) {
-    uvec4 data = geometries[geometry].data;
-    uint base = data.z + 3u * primitive;
+    GeometryRecord g = geometries[geometry];
+    uint base = g.first_index + 3u * primitive;
     uint i0 = indices[base];
     uint i1 = indices[base + 1u];
     uint i2 = indices[base + 2u];
-    vec3 p0 = vertex_position(data.w + i0);
-    vec3 p1 = vertex_position(data.w + i1);
-    vec3 p2 = vertex_position(data.w + i2);
+    vec3 p0 = vertex_position(g.first_vertex + i0);
+    vec3 p1 = vertex_position(g.first_vertex + i1);
+    vec3 p2 = vertex_position(g.first_vertex + i2);
     vec3 e1 = p1 - p0;
     vec3 e2 = p2 - p0;
     vec3 n = cross3(e1, e2);
@@ -66,8 +66,8 @@ FN void triangle_surface(uint geometry, uint primitive, vec3 o, vec3 d, INOUT(Su
         vec2 uv0 = vec2(0.0f, 0.0f);
         vec2 uv1 = vec2(1.0f, 0.0f);
         vec2 uv2 = vec2(1.0f, 1.0f);
-        if ((data.y & GEOMETRY_HAS_UVS) != 0u) {
-            uint first = geometries[geometry].attributes.y;
+        if ((g.flags & GEOMETRY_HAS_UVS) != 0u) {
+            uint first = geometries[geometry].first_uv;
             uv0 = vertex_uv(first + i0);
             uv1 = vertex_uv(first + i1);
             uv2 = vertex_uv(first + i2);
@@ -90,8 +90,8 @@ FN void triangle_surface(uint geometry, uint primitive, vec3 o, vec3 d, INOUT(Su
         }
     }
 
-    if (HAS(EFFECT_SMOOTH_NORMALS) && (data.y & GEOMETRY_HAS_NORMALS) != 0u) {
-        uint first = geometries[geometry].attributes.x;
+    if (HAS(EFFECT_SMOOTH_NORMALS) && (g.flags & GEOMETRY_HAS_NORMALS) != 0u) {
+        uint first = geometries[geometry].first_normal;
         vec3 n0 = vertex_normal(first + i0);
         vec3 n1 = vertex_normal(first + i1);
         vec3 n2 = vertex_normal(first + i2);
@@ -106,7 +106,7 @@ FN void triangle_surface(uint geometry, uint primitive, vec3 o, vec3 d, INOUT(Su
             s.dndv = (dn2 * duv1.x - dn1 * duv2.x) * duv_inverse;
         }
     } else {
-        if ((data.y & GEOMETRY_FLIP) != 0u) s.ng = -s.ng;
+        if ((g.flags & GEOMETRY_FLIP) != 0u) s.ng = -s.ng;
         s.ns = s.ng;
     }
 }
@@ -138,7 +138,7 @@ FN bool surface_at(IN(Hit) hit, vec3 o, vec3 d, INOUT(Surface) s) {
         set_o = transform_point(m.from0, m.from1, m.from2, o);
         set_d = transform_vector(m.from0, m.from1, m.from2, d);
     }
-    uint kind = geometries[hit.geometry].data.x;
+    uint kind = geometries[hit.geometry].kind;
     if (HAS(EFFECT_BILINEAR) && kind == GEOMETRY_BILINEAR) {
         if (!bilinear_surface(hit.geometry, hit.primitive, set_o, set_d, s)) return false;
     } else if (HAS(EFFECT_QUADRICS) && kind >= GEOMETRY_SPHERE) {
@@ -148,12 +148,12 @@ FN bool surface_at(IN(Hit) hit, vec3 o, vec3 d, INOUT(Surface) s) {
     }
     if (HAS(EFFECT_INSTANCES) && hit.instance != 0u) surface_to_world(hit.instance, s);
     s.way = way_out(s.position, s.error, s.ng);
-    uvec4 ids = geometries[hit.geometry].ids;
+    GeometryRecord g = geometries[hit.geometry];
     s.instance = hit.instance;
     s.geometry = hit.geometry;
     s.primitive = hit.primitive;
-    s.material = ids.x;
-    s.light = ids.y == NONE ? NONE : ids.y + hit.primitive;
+    s.material = g.material;
+    s.light = g.first_light == NONE ? NONE : g.first_light + hit.primitive;
     return true;
 }
 
@@ -172,7 +172,7 @@ RARE_FN float masked_opacity(IN(Surface) s) {
 // The share of a surface that is there: its alpha.
 FN float surface_opacity(IN(Surface) s) {
     if (!HAS(EFFECT_ALPHA)) return 1.0f;
-    if (geometries[s.geometry].ids.z == NONE && geometries[s.geometry].alpha.x >= 1.0f) return 1.0f;
+    if (geometries[s.geometry].alpha_texture == NONE && geometries[s.geometry].alpha >= 1.0f) return 1.0f;
     Surface masked = s;
     return masked_opacity(masked);
 }
@@ -190,7 +190,7 @@ FN uint surface_fate(float opacity, vec3 o, vec3 d) {
     return masked_fate(opacity, o, d);
 }
 
-FN bool is_interface(IN(Surface) s) { return materials[s.material].data.x == MATERIAL_INTERFACE; }
+FN bool is_interface(IN(Surface) s) { return materials[s.material].kind == MATERIAL_INTERFACE; }
 
 // The next surface point that the ray meets, masked ones too, which may let it pass: `fate` is one of SURFACE_*.
 FN bool intersect_next(vec3 origin, vec3 direction, OUT(Surface) s, OUT(uint) fate) {

@@ -1,7 +1,7 @@
 // The scene's records as kernels read them: shared by the host, the C++ kernels and GLSL.
 //
-// Members are vec4 and uvec4, or scalars in fours: whatever pads does so differently in GLSL and C++, and a shifted read gives
-// NaN. Records that are read once a dispatch have names for each scalar; those of every hit are read four numbers at a time.
+// Members come in fours: vec4, uvec4, four scalars, or a Spectrum and a scalar. Whatever pads does so differently in GLSL and C++, and a
+// shifted read gives NaN.
 // Indices that may be absent hold NONE. Directions and positions are world space unless said; colours are linear Rec.709.
 #ifndef LAMPYRIS_KERNEL_LAYOUT
 #define LAMPYRIS_KERNEL_LAYOUT
@@ -28,15 +28,23 @@ CONST uint GEOMETRY_REVERSED =
 // One record per shape. Triangles and patches are in world space (in object-definition space inside an instanced object);
 // quadrics are in their own space, with a transform.
 struct GeometryRecord {
-    uvec4
-        data;  // kind, flags, first entry of `indices` (3 a triangle, 4 a patch), first vertex (indices are relative to it)
-    uvec4
-        ids;  // material, first light (light of primitive i is first + i) or NONE, alpha texture or NONE, transform (quadrics)
-    uvec4
-        attributes;  // first vertex in `normals`, first vertex in `uvs`, number of primitives, interior medium << 16 | exterior
-                     // (a transition between media where they differ)
+    uint kind;
+    uint flags;
+    uint first_index;   // of `indices`, 3 a triangle, 4 a patch; indices are relative to first_vertex
+    uint first_vertex;  // of `positions`, in vertices
+    uint material;
+    uint first_light;    // light of primitive i is first_light + i; or NONE
+    uint alpha_texture;  // or NONE: `alpha` then
+    uint transform;      // quadrics
+    uint first_normal;   // of `normals` and `uvs`, in vertices
+    uint first_uv;
+    uint primitive_count;
+    uint media;   // interior << 16 | exterior: a transition between media where they differ
     vec4 params;  // see the kinds
-    vec4 alpha;   // x: constant alpha (used where the alpha texture is NONE); below 1 only where EFFECT_ALPHA
+    float alpha;  // below 1 only where EFFECT_ALPHA
+    float unused0;
+    float unused1;
+    float unused2;
 };
 
 // Rows of an affine transform and of its inverse.
@@ -52,7 +60,10 @@ struct TransformRecord {
 // Instance 0 is the world itself, with the identity.
 struct InstanceRecord {
     TransformRecord transform;
-    uvec4 data;  // first geometry, number of geometries, root node of its BVH, 1 if the transform swaps handedness
+    uint first_geometry;
+    uint geometry_count;
+    uint root_node;         // of its BVH
+    uint swaps_handedness;  // 1 if the transform does
 };
 
 // Binary BVH node that holds both children's boxes (64 bytes; kernels read it as two pairs). A child is an inner node (its index), or has the sign bit: a
@@ -83,17 +94,36 @@ CONST uint MATERIAL_EXACT_COAT = 16u;  // coats: unbiased weights where pbrt's a
 
 // A slot's value is its constant, or where its texture is not NONE, the texture.
 struct MaterialRecord {
-    uvec4 data;       // kind (MATERIAL_NAME), flags, bump (displacement) texture or NONE, normal-map image or NONE
-    uvec4 textures;   // textures of color0, color1, color2, of floats.x
-    uvec4 textures2;  // textures of floats.y, floats2.x, floats2.y, floats2.z
-    vec4 color0;      // reflectance; conductor: eta or reflectance; w: scale (diffusetransmission)
-    vec4 color1;      // conductor: k; diffusetransmission: transmittance
-    vec4 color2;      // coats: albedo of the medium between the layers
-    vec4
-        floats;  // roughness u, v (of the base for coatedconductor, of the coat for coateddiffuse); z: eta (dielectrics, coats); w: g
-    vec4
-        floats2;  // x: thickness of the coat; y, z: roughness u, v of coatedconductor's coat; w: GGX alpha of its roughest lobe anywhere (1e30: diffuse)
-    uvec4 extra;  // coats: maxdepth, nsamples; mix: the two materials (x, y), amount texture (z; NONE: floats.x)
+    uint kind;  // MATERIAL_NAME
+    uint flags;
+    uint bump_texture;    // displacement, or NONE
+    uint normal_map;      // image, or NONE
+    uint color0_texture;  // textures, or NONE, of the slots below
+    uint color1_texture;
+    uint color2_texture;
+    uint roughness_u_texture;
+    uint roughness_v_texture;
+    uint thickness_texture;
+    uint coat_roughness_u_texture;
+    uint coat_roughness_v_texture;
+    Spectrum color0;  // reflectance; conductor: eta or reflectance
+    float scale;      // diffusetransmission: of both
+    Spectrum color1;  // conductor: k; diffusetransmission: transmittance
+    float amount;     // mix: of second_material
+    Spectrum color2;  // coats: albedo of the medium between the layers
+    uint amount_texture;
+    float roughness_u;  // of the base for coatedconductor, of the coat for coateddiffuse
+    float roughness_v;
+    float eta;               // dielectrics, coats
+    float g;                 // coats: asymmetry of the medium's phase function
+    float thickness;         // coats
+    float coat_roughness_u;  // coatedconductor
+    float coat_roughness_v;
+    float roughest_alpha;  // GGX alpha of its roughest lobe anywhere (1e30: diffuse)
+    uint max_depth;        // coats: most events of a random walk
+    uint samples;          // coats: random walks per evaluation
+    uint first_material;   // mix
+    uint second_material;
 };
 
 // ---- Media -----------------------------------------------------------------------------------------------------------
@@ -103,17 +133,18 @@ CONST uint MEDIUM_VACUUM = 0u;
 CONST uint MEDIUM_COUNT = 0x10000u;  // at most, this one included: two fit into an uint
 
 struct MediumRecord {
-    vec4 sigma_a;  // absorbed share per distance (1 / scene unit, per channel)
+    Spectrum sigma_a;  // absorbed share per distance (1 / scene unit)
+    float unused0;
 };
 
 // ---- Textures --------------------------------------------------------------------------------------------------------
 
 // A texture is a program in postfix order over a stack of colours (floats use all three channels alike, and read the first), so
-// that a texture of textures needs no recursion: data.x is the operation, and the last operation of a program has data.y & 1.
+// that a texture of textures needs no recursion: the last operation of a program has flags & 1.
 // Operations below TEXTURE_CHECKERBOARD push a value, the others replace the values that they pop by one.
 CONST uint TEXTURE_CONSTANT = 0u;  // a
-CONST uint TEXTURE_IMAGE = 1u;     // image data.z at the mapped uv; a: scale; data.w & 1: invert
-CONST uint TEXTURE_FBM = 2u;       // a.x: roughness; data.w: octaves; data.z: first of Perlin's permutation in `texels`
+CONST uint TEXTURE_IMAGE = 1u;     // image at the mapped uv; a: scale; option & 1: invert
+CONST uint TEXTURE_FBM = 2u;       // a.x: roughness; option: octaves; image: first of Perlin's permutation in `texels`
 CONST uint TEXTURE_WRINKLED = 3u;  // the same
 CONST uint TEXTURE_WINDY = 4u;     // the same, without a roughness
 CONST uint TEXTURE_MARBLE = 5u;    // the same, with a: roughness, scale, variation
@@ -121,7 +152,7 @@ CONST uint TEXTURE_CHECKERBOARD = 8u;    // of tex1, tex2
 CONST uint TEXTURE_SCALE = 9u;           // of tex, scale
 CONST uint TEXTURE_MIX = 10u;            // of tex1, tex2, amount
 CONST uint TEXTURE_DIRECTION_MIX = 11u;  // of tex1, tex2; a: unit direction in world space
-CONST uint TEXTURE_DOTS = 12u;           // of inside, outside; data.z: the permutation
+CONST uint TEXTURE_DOTS = 12u;           // of inside, outside; image: the permutation
 CONST uint TEXTURE_BILERP = 13u;         // of v00, v01, v10, v11
 CONST uint TEXTURE_STACK = 16u;          // the depth and
 CONST uint TEXTURE_LENGTH = 1024u;       // the number of operations that the host guarantees not to exceed
@@ -134,7 +165,10 @@ CONST uint MAPPING_PLANAR = 4u;       // m0: vs, ds; m1: vt, dt, with the textur
 CONST uint MAPPING_SPACE = 5u;        // rows; not (s, t) but the point in the texture's space
 
 struct TextureOp {
-    uvec4 data;  // operation, flags (1: last) | mapping << 8, image, option
+    uint operation;
+    uint flags;  // 1: last | mapping << 8
+    uint image;  // or table
+    uint option;
     vec4 a;
     vec4 m0;
     vec4 m1;
@@ -155,9 +189,14 @@ CONST uint TEXEL_R32F = 4u;     // one uint
 
 // Texels lie row by row from the top.
 struct ImageRecord {
-    uvec4 data;  // first uint in `texels`, width, height, texel format | wrap << 8 | filter << 16
-    uvec4
-        decode;  // x: first of 256 floats (as bits) in `texels`: what a byte of an 8-bit format means, in linear light
+    uint first_texel;  // in `texels`
+    uint width;
+    uint height;
+    uint format;    // texel format | wrap << 8 | filter << 16
+    uint decoding;  // first of 256 floats (as bits) in `texels`: what a byte of an 8-bit format means, in linear light
+    uint unused0;
+    uint unused1;
+    uint unused2;
 };
 
 // ---- Lights ----------------------------------------------------------------------------------------------------------
@@ -188,11 +227,16 @@ CONST uint CDF_TOTAL = 0x80000000u;  // where a CDF in `distributions` ends
 // Transforms of lights are the directive's own: that a goniometric image's pole is the light's y axis, and that images have
 // their first row on top, is the kernels' business.
 struct LightRecord {
-    uvec4 data;  // kind, flags | medium << 16, image or emission texture or NONE, transform (light space) or NONE
-    uvec4
-        ids;  // area lights: geometry, primitive, how far outside of a triangle shadow rays end (float bits); infinite images: offset of the distribution, width, height
-    vec4
-        emission;  // rgb: radiance, intensity or irradiance, or the scale of the texture or image; w: the probability of choosing this light
+    uint kind;
+    uint flags;         // | medium << 16
+    uint image;         // or emission texture, or NONE
+    uint transform;     // of light space, or NONE
+    uint geometry;      // area lights
+    uint primitive;     // area lights
+    float shadow_end;   // triangle: how far outside of it shadow rays end
+    uint distribution;  // infinite images: offset in `distributions`
+    Spectrum emission;  // radiance, intensity or irradiance, or the scale of the texture or image
+    float choice_probability;
     vec4 v0;  // triangle: p0, w: area. point, spot, ...: position. distant: unit direction towards the light, w: unused
     vec4
         v1;  // triangle: p1 (order of the indices), w: distance of the farthest corner from the centroid. spot: unit axis (away from the light), w: cosine at which the falloff begins
@@ -217,15 +261,26 @@ CONST uint PIXEL_FILTER_GAUSSIAN = 2u;  // and the other smooth ones: sampled fr
 // the integral of the absolute value over the filter's, and a guide to the CDF (Chen and Asau 1974): entry i is an interval at
 // or just before the one that a number from i/n on falls into.
 struct CameraRecord {
-    uvec4 data;  // kind, filter kind, offset of the filter's tables in `distributions`, their number of intervals n
-    uvec4 film;  // full resolution x, y, and the crop window's origin x, y
-    vec4 to0;    // rows of world-from-camera (camera space: +x right, +y up, +z forward, as pbrt's)
+    uint kind;
+    uint filter_kind;
+    uint filter_tables;     // offset in `distributions`
+    uint filter_intervals;  // of a table: n
+    uint resolution_x;      // of the full film
+    uint resolution_y;
+    uint crop_x;  // origin of the crop window
+    uint crop_y;
+    vec4 to0;  // rows of world-from-camera (camera space: +x right, +y up, +z forward, as pbrt's)
     vec4 to1;
     vec4 to2;
     vec4 screen;  // raster to camera space at z = 1: x = screen.x + px * screen.z, y = screen.y + py * screen.w
-    vec4
-        lens;  // x: lens radius, y: focal distance, z: clamp of a sample's largest component (0: none), w: imaging ratio
-    vec4 filtering;  // x, y: radius; z, w: parameters
+    float lens_radius;
+    float focal_distance;
+    float max_component;  // clamp of a sample's largest one; 0: none
+    float imaging_ratio;
+    float filter_radius_x;
+    float filter_radius_y;
+    float unused0;
+    float unused1;
 };
 
 struct SceneRecord {

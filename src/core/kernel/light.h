@@ -8,12 +8,12 @@
 #include "core/kernel/environment.h"
 
 struct LightSample {
-    vec3 wi;         // unit direction towards the light
-    Spectrum radiance;   // arriving from there, if nothing is in between; delta lights: radiance / pdf is what counts
-    float pdf;       // solid angle, times the probability of choosing the light; delta lights: the latter alone
-    float distance;  // INFINITE_DISTANCE: the shadow ray leaves the scene
-    vec3 end;        // of the shadow ray, outside of the light's surface (shadow_end)
-    uint is_delta;   // 1: no ray finds this light by chance; pdf may be a density all the same (LIGHT_PASSED)
+    vec3 wi;            // unit direction towards the light
+    Spectrum radiance;  // arriving from there, if nothing is in between; delta lights: radiance / pdf is what counts
+    float pdf;          // solid angle, times the probability of choosing the light; delta lights: the latter alone
+    float distance;     // INFINITE_DISTANCE: the shadow ray leaves the scene
+    vec3 end;           // of the shadow ray, outside of the light's surface (shadow_end)
+    uint is_delta;      // 1: no ray finds this light by chance; pdf may be a density all the same (LIGHT_PASSED)
     uint light;
 };
 
@@ -22,23 +22,24 @@ struct LightSample {
 // The side of a one-sided light that emits. pbrt-v4's quadrics turn inside out under a mirroring transform where rays meet them, and
 // do not where they are sampled as lights. What scatters is as pbrt's rays see it; what emits is on the side that pbrt's lamps shine.
 FN vec3 area_emission_side(uint light, vec3 ng) {
-    if (!HAS(EFFECT_QUADRIC_LIGHTS) || lights[light].data.x == LIGHT_TRIANGLE) return ng;
-    uvec4 data = geometries[lights[light].ids.x].data;
-    bool mirrored = ((data.y & GEOMETRY_FLIP) != 0u) != ((data.y & GEOMETRY_REVERSED) != 0u);
-    return data.x >= GEOMETRY_SPHERE && mirrored ? -ng : ng;
+    if (!HAS(EFFECT_QUADRIC_LIGHTS) || lights[light].kind == LIGHT_TRIANGLE) return ng;
+    uint geometry = lights[light].geometry;
+    uint flags = geometries[geometry].flags;
+    bool mirrored = ((flags & GEOMETRY_FLIP) != 0u) != ((flags & GEOMETRY_REVERSED) != 0u);
+    return geometries[geometry].kind >= GEOMETRY_SPHERE && mirrored ? -ng : ng;
 }
 
 // Radiance that leaves an area light at a point towards w.
 FN Spectrum area_emission(uint light, vec3 position, vec3 ng, vec2 uv, vec3 w) {
-    uvec4 data = lights[light].data;
-    if ((data.y & LIGHT_TWO_SIDED) == 0u && !(dot3(area_emission_side(light, ng), w) > 0.0f)) return Spectrum(0.0f);
-    Spectrum radiance = spectrum_of(lights[light].emission);
-    if (HAS(EFFECT_LIGHT_TEXTURES) && data.z != NONE) {
+    if ((lights[light].flags & LIGHT_TWO_SIDED) == 0u && !(dot3(area_emission_side(light, ng), w) > 0.0f))
+        return Spectrum(0.0f);
+    Spectrum radiance = lights[light].emission;
+    if (HAS(EFFECT_LIGHT_TEXTURES) && lights[light].image != NONE) {
         TextureContext context;
         context.position = position;
         context.normal = ng;
         context.uv = uv;
-        radiance = radiance * spectrum_of_rgb(max(texture_color(data.z, context), vec3(0.0f)));
+        radiance = radiance * spectrum_of_rgb(max(texture_color(lights[light].image, context), vec3(0.0f)));
     }
     return radiance;
 }
@@ -54,35 +55,35 @@ FN float light_pdf(IN(Surface) s, vec3 ref_p, vec3 wi) {
     if (!HAS(EFFECT_AREA_LIGHTS) || s.light == NONE) return 0.0f;
     LightRecord light = lights[s.light];
     float pdf = 0.0f;
-    if (!HAS(EFFECT_QUADRIC_LIGHTS) || light.data.x == LIGHT_TRIANGLE) {
+    if (!HAS(EFFECT_QUADRIC_LIGHTS) || light.kind == LIGHT_TRIANGLE) {
         pdf = pdf_triangle_light(light, ref_p, s.position, s.ng, wi);
-    } else if (HAS(EFFECT_BILINEAR) && geometries[light.ids.x].data.x == GEOMETRY_BILINEAR) {
-        pdf = pdf_bilinear_light(light.ids.x, light.ids.y, ref_p, s.position, s.ng, wi);
+    } else if (HAS(EFFECT_BILINEAR) && geometries[light.geometry].kind == GEOMETRY_BILINEAR) {
+        pdf = pdf_bilinear_light(light.geometry, light.primitive, ref_p, s.position, s.ng, wi);
     } else if (HAS(EFFECT_QUADRICS)) {
-        pdf = pdf_quadric_light(light.ids.x, ref_p, s.position, s.ng, wi);
+        pdf = pdf_quadric_light(light.geometry, ref_p, s.position, s.ng, wi);
     }
-    return pdf * light.emission.w;
+    return pdf * light.choice_probability;
 }
 
 // The share of a masked light that is there: rays find it with this probability. A light that all rays pass sends all of its
 // light, as pbrt's.
 FN float light_alpha(IN(LightRecord) light, vec3 position, vec3 ng, vec2 uv) {
-    if ((light.data.y & LIGHT_PASSED) != 0u) return 1.0f;
+    if ((light.flags & LIGHT_PASSED) != 0u) return 1.0f;
     TextureContext context;
     context.position = position;
     context.normal = ng;
     context.uv = uv;
-    return clamp(surface_alpha(light.ids.x, context), 0.0f, 1.0f);
+    return clamp(surface_alpha(light.geometry, context), 0.0f, 1.0f);
 }
 
 // A point on an area light, uniform in its area (of patches that are plane); false where it has none.
 FN bool sample_light_area(IN(LightRecord) light, vec2 u, OUT(AreaSample) s) {
-    if (!HAS(EFFECT_QUADRIC_LIGHTS) || light.data.x == LIGHT_TRIANGLE) {
+    if (!HAS(EFFECT_QUADRIC_LIGHTS) || light.kind == LIGHT_TRIANGLE) {
         s = sample_triangle_area(light, u);
-    } else if (HAS(EFFECT_BILINEAR) && geometries[light.ids.x].data.x == GEOMETRY_BILINEAR) {
-        s = sample_bilinear_area(light.ids.x, light.ids.y, u);
+    } else if (HAS(EFFECT_BILINEAR) && geometries[light.geometry].kind == GEOMETRY_BILINEAR) {
+        s = sample_bilinear_area(light.geometry, light.primitive, u);
     } else if (HAS(EFFECT_QUADRICS)) {
-        s = sample_quadric_area(light.ids.x, u);
+        s = sample_quadric_area(light.geometry, u);
     } else {
         return false;
     }
@@ -93,22 +94,22 @@ FN bool sample_area_light(uint index, vec3 ref_p, vec2 u, INOUT(LightSample) s) 
     LightRecord light = lights[index];
     ShapeSample shape;
     bool found = false;
-    if (!HAS(EFFECT_QUADRIC_LIGHTS) || light.data.x == LIGHT_TRIANGLE) {
+    if (!HAS(EFFECT_QUADRIC_LIGHTS) || light.kind == LIGHT_TRIANGLE) {
         found = sample_triangle_light(light, ref_p, u, shape);
-    } else if (HAS(EFFECT_BILINEAR) && geometries[light.ids.x].data.x == GEOMETRY_BILINEAR) {
-        found = sample_bilinear_light(light.ids.x, light.ids.y, ref_p, u, shape);
+    } else if (HAS(EFFECT_BILINEAR) && geometries[light.geometry].kind == GEOMETRY_BILINEAR) {
+        found = sample_bilinear_light(light.geometry, light.primitive, ref_p, u, shape);
     } else if (HAS(EFFECT_QUADRICS)) {
-        found = sample_quadric_light(light.ids.x, ref_p, u, shape);
+        found = sample_quadric_light(light.geometry, ref_p, u, shape);
     }
     if (!found) return false;
     s.wi = shape.wi;
     s.distance = shape.distance;
     s.end = shadow_end(shape.position, shape.offset, shape.ng, shape.wi, shape.distance);
-    s.pdf = shape.pdf * light.emission.w;
+    s.pdf = shape.pdf * light.choice_probability;
     s.radiance = area_emission(index, shape.position, shape.ng, shape.uv, -shape.wi);
     if (HAS(EFFECT_ALPHA)) {
         s.radiance = s.radiance * light_alpha(light, shape.position, shape.ng, shape.uv);
-        s.is_delta = (light.data.y & LIGHT_PASSED) != 0u ? 1u : 0u;
+        s.is_delta = (light.flags & LIGHT_PASSED) != 0u ? 1u : 0u;
     }
     return !is_black(s.radiance);
 }
@@ -125,13 +126,13 @@ FN float smooth_step_of(float x, float low, float high) {
 // Intensity (W/sr per channel) that the light at a point sends in direction w (world, unit length), as pbrt's lights of the
 // same names do (4th edition, sections 12.2.1 and 12.2.3).
 FN Spectrum point_light_intensity(IN(LightRecord) light, vec3 w) {
-    Spectrum intensity = spectrum_of(light.emission);
-    if (light.data.x == LIGHT_SPOT) return intensity * smooth_step_of(dot3(vec3(light.v1), w), light.v2.w, light.v1.w);
-    if (HAS(EFFECT_PROJECTION_LIGHTS) && light.data.x >= LIGHT_PROJECTION) {
-        TransformRecord m = transforms[light.data.w];
+    Spectrum intensity = light.emission;
+    if (light.kind == LIGHT_SPOT) return intensity * smooth_step_of(dot3(vec3(light.v1), w), light.v2.w, light.v1.w);
+    if (HAS(EFFECT_PROJECTION_LIGHTS) && light.kind >= LIGHT_PROJECTION) {
+        TransformRecord m = transforms[light.transform];
         vec3 d = unit(transform_vector(m.from0, m.from1, m.from2, w));
         vec2 st;
-        if (light.data.x == LIGHT_PROJECTION) {
+        if (light.kind == LIGHT_PROJECTION) {
             if (!(d.z >= 1e-3f)) return Spectrum(0.0f);
             st = vec2((d.x / d.z - light.v2.x) / (light.v2.z - light.v2.x),
                       (light.v2.w - d.y / d.z) / (light.v2.w - light.v2.y));
@@ -139,7 +140,7 @@ FN Spectrum point_light_intensity(IN(LightRecord) light, vec3 w) {
         } else {
             st = square_from_direction(vec3(d.x, d.z, d.y));  // the image's pole is the light's y axis
         }
-        intensity = intensity * spectrum_of(image_lookup(light.data.z, st));
+        intensity = intensity * spectrum_of(image_lookup(light.image, st));
     }
     return intensity;
 }
@@ -153,7 +154,7 @@ FN bool sample_point_light(uint index, vec3 ref_p, INOUT(LightSample) s) {
     s.wi = to_light / s.distance;
     s.end = shadow_end(vec3(light.v0), point_offset(vec3(light.v0), s.wi), s.wi, s.wi, s.distance);
     s.radiance = point_light_intensity(light, -s.wi) / d2;
-    s.pdf = light.emission.w;
+    s.pdf = light.choice_probability;
     s.is_delta = 1u;
     return !is_black(s.radiance);
 }
@@ -189,15 +190,15 @@ FN bool light_sample(vec3 ref_p, uint u_choice, uvec2 u_place, OUT(LightSample) 
         // Bits again: those beyond a float's are made of the other number's.
         u.x = (uint(place * 16777216.0f) << 8u) | (hash32(u.y) >> 24u);
     }
-    uint kind = lights[s.light].data.x;
+    uint kind = lights[s.light].kind;
     if (HAS(EFFECT_AREA_LIGHTS) && kind <= LIGHT_GEOMETRY) return sample_area_light(s.light, ref_p, unit_floats(u), s);
     if (HAS(EFFECT_ENVIRONMENT) && (kind == LIGHT_INFINITE || kind == LIGHT_INFINITE_IMAGE)) {
         return environment_sample(s.light, u, s.wi, s.radiance, s.pdf) && !is_black(s.radiance);
     }
     if (HAS(EFFECT_DISTANT_LIGHTS) && kind == LIGHT_DISTANT) {
         s.wi = vec3(lights[s.light].v0);
-        s.radiance = spectrum_of(lights[s.light].emission);
-        s.pdf = lights[s.light].emission.w;
+        s.radiance = lights[s.light].emission;
+        s.pdf = lights[s.light].choice_probability;
         s.is_delta = 1u;
         return true;
     }

@@ -15,8 +15,8 @@ FN TextureContext surface_texture_context(IN(Surface) s) {
 
 // Opacity of a geometry at a point: a hit counts with this probability.
 FN float surface_alpha(uint geometry, IN(TextureContext) c) {
-    uint program = geometries[geometry].ids.z;
-    if (program == NONE) return geometries[geometry].alpha.x;
+    uint program = geometries[geometry].alpha_texture;
+    if (program == NONE) return geometries[geometry].alpha;
     return texture_float(program, c);
 }
 
@@ -26,14 +26,14 @@ FN float surface_alpha(uint geometry, IN(TextureContext) c) {
 // The texture of a slot, in the order of the record: color0..2, roughness u and v, thickness, the coat's roughness u and v.
 CONST uint MATERIAL_SLOTS = 8u;
 FN uint material_slot(IN(MaterialRecord) m, uint slot) {
-    if (slot == 0u) return m.textures.x;
-    if (slot == 1u) return m.textures.y;
-    if (slot == 2u) return m.textures.z;
-    if (slot == 3u) return m.textures.w;
-    if (slot == 4u) return m.textures2.x;
-    if (slot == 5u) return m.textures2.y;
-    if (slot == 6u) return m.textures2.z;
-    return m.textures2.w;
+    if (slot == 0u) return m.color0_texture;
+    if (slot == 1u) return m.color1_texture;
+    if (slot == 2u) return m.color2_texture;
+    if (slot == 3u) return m.roughness_u_texture;
+    if (slot == 4u) return m.roughness_v_texture;
+    if (slot == 5u) return m.thickness_texture;
+    if (slot == 6u) return m.coat_roughness_u_texture;
+    return m.coat_roughness_v_texture;
 }
 
 // The shading normal and tangent of a surface displaced along its normal: `displaced` holds the displacement after a step in u,
@@ -60,20 +60,20 @@ FN void apply_normal_map(INOUT(Surface) s, uint image) {
 }
 
 FN bool material_is_textured(IN(MaterialRecord) m) {
-    uvec4 both = m.textures & m.textures2;
-    return (both.x & both.y & both.z & both.w) != NONE;
+    return (m.color0_texture & m.color1_texture & m.color2_texture & m.roughness_u_texture & m.roughness_v_texture &
+            m.thickness_texture & m.coat_roughness_u_texture & m.coat_roughness_v_texture) != NONE;
 }
 
 // Puts the values of textures into the record's slots, and bends the shading normal where there is a bump map. One loop with one
 // call: a GLSL compiler inlines each evaluation of a program.
 FN void material_textures(INOUT(MaterialRecord) m, INOUT(Surface) s) {
-    bool bumped = HAS(EFFECT_BUMP) && m.data.z != NONE;
+    bool bumped = HAS(EFFECT_BUMP) && m.bump_texture != NONE;
     bool textured = HAS(EFFECT_TEXTURES) && material_is_textured(m);
     TextureContext here = surface_texture_context(s);
     vec3 displaced = vec3(0.0f);
     uint end = textured ? 3u + MATERIAL_SLOTS : 3u;
     for (uint job = bumped ? 0u : 3u; job < end; ++job) {
-        uint program = job < 3u ? m.data.z : material_slot(m, job - 3u);
+        uint program = job < 3u ? m.bump_texture : material_slot(m, job - 3u);
         if (program == NONE) continue;
         TextureContext c = here;
         if (job == 0u) {
@@ -91,21 +91,21 @@ FN void material_textures(INOUT(MaterialRecord) m, INOUT(Surface) s) {
         else if (job == 2u)
             displaced.z = value.x;
         else if (job == 3u)
-            m.color0 = vec4(value.x, value.y, value.z, m.color0.w);
+            m.color0 = spectrum_of_rgb(value);
         else if (job == 4u)
-            m.color1 = vec4(value.x, value.y, value.z, m.color1.w);
+            m.color1 = spectrum_of_rgb(value);
         else if (job == 5u)
-            m.color2 = vec4(value.x, value.y, value.z, m.color2.w);
+            m.color2 = spectrum_of_rgb(value);
         else if (job == 6u)
-            m.floats.x = value.x;
+            m.roughness_u = value.x;
         else if (job == 7u)
-            m.floats.y = value.x;
+            m.roughness_v = value.x;
         else if (job == 8u)
-            m.floats2.x = value.x;
+            m.thickness = value.x;
         else if (job == 9u)
-            m.floats2.y = value.x;
+            m.coat_roughness_u = value.x;
         else
-            m.floats2.z = value.x;
+            m.coat_roughness_v = value.x;
     }
     if (bumped) apply_bump(s, displaced);
 }
@@ -113,15 +113,16 @@ FN void material_textures(INOUT(MaterialRecord) m, INOUT(Surface) s) {
 // The Bsdf at s, and the frame in which it is meant: z is the shading normal. wo, the direction that light leaves in, and the
 // frame's axes are in world space. s.ns and s.dpdu are those of the bump or normal map afterwards, s.material is never a mix.
 FN Bsdf material_bsdf(INOUT(Surface) s, vec3 wo, OUT(Frame) frame) {
-    if (HAS(EFFECT_MATERIAL_MIX) && RARELY(materials[s.material].data.x == MATERIAL_MIX)) {
+    if (HAS(EFFECT_MATERIAL_MIX) && RARELY(materials[s.material].kind == MATERIAL_MIX)) {
         Surface mixed = s;
         mix_resolve(mixed, wo);
         s.material = mixed.material;
     }
     MaterialRecord m = materials[s.material];
-    if ((HAS(EFFECT_BUMP) && RARELY(m.data.z != NONE)) || (HAS(EFFECT_TEXTURES) && RARELY(material_is_textured(m))))
+    if ((HAS(EFFECT_BUMP) && RARELY(m.bump_texture != NONE)) ||
+        (HAS(EFFECT_TEXTURES) && RARELY(material_is_textured(m))))
         material_textures(m, s);
-    if (HAS(EFFECT_BUMP) && m.data.w != NONE) apply_normal_map(s, m.data.w);
+    if (HAS(EFFECT_BUMP) && m.normal_map != NONE) apply_normal_map(s, m.normal_map);
 
     Bsdf b = bsdf_of_record(m);
     // Only anisotropic roughness asks where the tangent points.

@@ -10,12 +10,12 @@
 // all.
 FN Spectrum medium_transmittance(uint medium, float distance) {
     if (!HAS(EFFECT_MEDIUM) || medium == MEDIUM_VACUUM) return Spectrum(1.0f);
-    return exp_of_minus(spectrum_of(media[medium].sigma_a) * distance);
+    return exp_of_minus(media[medium].sigma_a * distance);
 }
 
 // The medium that a geometry has on the side of its normal ng that the direction points to.
 FN uint medium_on_side(uint geometry, vec3 ng, vec3 direction) {
-    uint sides = geometries[geometry].attributes.w;
+    uint sides = geometries[geometry].media;
     return dot3(direction, ng) > 0.0f ? sides & 0xffffu : sides >> 16u;
 }
 
@@ -23,7 +23,7 @@ FN uint medium_on_side(uint geometry, vec3 ng, vec3 direction) {
 // in pbrt-v4, the surface's own on that side, and the same as before where the surface is no transition between media.
 FN uint medium_behind(IN(Surface) s, vec3 direction, uint current) {
     if (!HAS(EFFECT_MEDIUM)) return MEDIUM_VACUUM;
-    uint sides = geometries[s.geometry].attributes.w;
+    uint sides = geometries[s.geometry].media;
     if ((sides & 0xffffu) == sides >> 16u) return current;
     return medium_on_side(s.geometry, s.ng, direction);
 }
@@ -34,9 +34,8 @@ FN uint camera_medium() { return HAS(EFFECT_MEDIUM) ? scene[0].camera_medium : M
 // other lights; as in pbrt-v4 an area light's medium is its shape's.
 FN uint light_medium(uint light, vec3 ng, vec3 direction) {
     if (!HAS(EFFECT_MEDIUM)) return MEDIUM_VACUUM;
-    uvec4 data = lights[light].data;
-    if (data.x <= LIGHT_GEOMETRY) return medium_on_side(lights[light].ids.x, ng, direction);
-    return data.y >> 16u;
+    if (lights[light].kind <= LIGHT_GEOMETRY) return medium_on_side(lights[light].geometry, ng, direction);
+    return lights[light].flags >> 16u;
 }
 
 #endif

@@ -39,8 +39,8 @@ FN vec3 direction_unpack(uint bits) {
 FN PhotonRecord photon_pack(vec3 position, vec3 direction, Spectrum power, uint key) {
     PhotonRecord p;
     p.place = uvec4(floatBitsToUint(position.x), floatBitsToUint(position.y), floatBitsToUint(position.z), key);
-    p.flux =
-        uvec4(direction_pack(direction), floatBitsToUint(power[0]), floatBitsToUint(power[1]), floatBitsToUint(power[2]));
+    p.flux = uvec4(direction_pack(direction), floatBitsToUint(power[0]), floatBitsToUint(power[1]),
+                   floatBitsToUint(power[2]));
     return p;
 }
 // Of photon number `number` of a path: unique as long as (number + 1) * paths <= 2^32.

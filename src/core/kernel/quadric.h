@@ -44,8 +44,8 @@ FN bool quadric_has_point(uint kind, vec4 params, vec3 p) {
 // is q, the other c / q, so that neither cancels (equations 8 and 9).
 FN bool quadric_solve(uint geometry, vec3 set_origin, vec3 set_direction, float t_max, OUT(float) t, OUT(vec3) p) {
     GeometryRecord g = geometries[geometry];
-    TransformRecord m = transforms[g.ids.w];
-    uint kind = g.data.x;
+    TransformRecord m = transforms[g.transform];
+    uint kind = g.kind;
     t = 0.0f;
     p = vec3(0.0f);
     vec3 o = transform_point(m.from0, m.from1, m.from2, set_origin);
@@ -115,9 +115,9 @@ FN vec3 quadric_outward(uint kind, vec4 params, vec3 p) {
 // is the factor by which the transform stretches area there.
 FN vec3 quadric_set_normal(uint geometry, vec3 p) {
     GeometryRecord g = geometries[geometry];
-    TransformRecord m = transforms[g.ids.w];
-    vec3 n = transform_normal(m.from0, m.from1, m.from2, quadric_outward(g.data.x, g.params, p));
-    return (g.data.y & GEOMETRY_FLIP) != 0u ? -n : n;
+    TransformRecord m = transforms[g.transform];
+    vec3 n = transform_normal(m.from0, m.from1, m.from2, quadric_outward(g.kind, g.params, p));
+    return (g.flags & GEOMETRY_FLIP) != 0u ? -n : n;
 }
 
 // Polar angles of a sphere's zmin and zmax.
@@ -140,10 +140,10 @@ FN vec2 quadric_uv(uint kind, vec4 params, vec3 p) {
 // Position and rounding error of p (quadric's space, on the surface) in the set's space.
 FN vec3 quadric_set_position(uint geometry, vec3 p, OUT(vec3) error) {
     GeometryRecord g = geometries[geometry];
-    TransformRecord m = transforms[g.ids.w];
+    TransformRecord m = transforms[g.transform];
     vec3 own = gamma_bound(5.0f) * abs(p);
-    if (g.data.x == GEOMETRY_DISK) own = vec3(0.0f);
-    if (g.data.x == GEOMETRY_CYLINDER) own.z = 0.0f;
+    if (g.kind == GEOMETRY_DISK) own = vec3(0.0f);
+    if (g.kind == GEOMETRY_CYLINDER) own.z = 0.0f;
     error = transform_vector(abs(m.to0), abs(m.to1), abs(m.to2), own) +
             quadric_bound() * transform_magnitude(m.to0, m.to1, m.to2, p);
     return transform_point(m.to0, m.to1, m.to2, p);
@@ -152,8 +152,8 @@ FN vec3 quadric_set_position(uint geometry, vec3 p, OUT(vec3) error) {
 // Texture coordinates and tangents of the surface at p (quadric's space), whose set normal has the length given.
 FN void quadric_fill_uv(uint geometry, vec3 p, float normal_length, INOUT(Surface) s) {
     GeometryRecord g = geometries[geometry];
-    TransformRecord m = transforms[g.ids.w];
-    uint kind = g.data.x;
+    TransformRecord m = transforms[g.transform];
+    uint kind = g.kind;
     float phi_max = g.params.w;
     s.uv = quadric_uv(kind, g.params, p);
 
@@ -177,7 +177,7 @@ FN void quadric_fill_uv(uint geometry, vec3 p, float normal_length, INOUT(Surfac
     s.dpdu = transform_vector(m.to0, m.to1, m.to2, dpdu);
     s.dpdv = transform_vector(m.to0, m.to1, m.to2, dpdv);
     if (HAS(EFFECT_BUMP) && kind != GEOMETRY_DISK) {
-        float sign = (g.data.y & GEOMETRY_FLIP) != 0u ? -1.0f : 1.0f;
+        float sign = (g.flags & GEOMETRY_FLIP) != 0u ? -1.0f : 1.0f;
         float curvature = sign / g.params.x;
         vec3 dndu = transform_normal(m.from0, m.from1, m.from2, dpdu * curvature);
         vec3 dndv =

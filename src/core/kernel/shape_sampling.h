@@ -117,12 +117,12 @@ FN vec3 sample_spherical_triangle(vec3 a, vec3 b, vec3 c, float solid_angle, vec
 
 // The corners of a triangle: which vertices they are.
 FN uvec3 triangle_corners(uint geometry, uint primitive) {
-    uint first = geometries[geometry].data.z + 3u * primitive;
+    uint first = geometries[geometry].first_index + 3u * primitive;
     return uvec3(indices[first], indices[first + 1u], indices[first + 2u]);
 }
 
 RARE_FN vec3 interpolated_light_normal(uint geometry, uint primitive, vec3 barycentric) {
-    uint normals_of = geometries[geometry].attributes.x;
+    uint normals_of = geometries[geometry].first_normal;
     uvec3 corner = triangle_corners(geometry, primitive);
     return barycentric.x * vertex_normal(normals_of + corner.x) + barycentric.y * vertex_normal(normals_of + corner.y) +
            barycentric.z * vertex_normal(normals_of + corner.z);
@@ -132,16 +132,16 @@ RARE_FN vec3 interpolated_light_normal(uint geometry, uint primitive, vec3 baryc
 FN vec3 triangle_light_normal(IN(LightRecord) light, vec3 barycentric) {
     vec3 ng = vec3(light.normal);
     if (HAS(EFFECT_SMOOTH_NORMALS) && RARELY(light.normal.w != 0.0f))
-        return face_forward(ng, interpolated_light_normal(light.ids.x, light.ids.y, barycentric));
+        return face_forward(ng, interpolated_light_normal(light.geometry, light.primitive, barycentric));
     return ng;
 }
 
 // pbrt's uv of a triangle without any are (0,0), (1,0), (1,1).
 FN vec2 triangle_light_uv(IN(LightRecord) light, vec3 barycentric) {
     if ((HAS(EFFECT_LIGHT_TEXTURES) || HAS(EFFECT_ALPHA)) &&
-        (geometries[light.ids.x].data.y & GEOMETRY_HAS_UVS) != 0u) {
-        uint uvs_of = geometries[light.ids.x].attributes.y;
-        uvec3 corner = triangle_corners(light.ids.x, light.ids.y);
+        (geometries[light.geometry].flags & GEOMETRY_HAS_UVS) != 0u) {
+        uint uvs_of = geometries[light.geometry].first_uv;
+        uvec3 corner = triangle_corners(light.geometry, light.primitive);
         return barycentric.x * vertex_uv(uvs_of + corner.x) + barycentric.y * vertex_uv(uvs_of + corner.y) +
                barycentric.z * vertex_uv(uvs_of + corner.z);
     }
@@ -169,7 +169,7 @@ FN bool sample_triangle_light(IN(LightRecord) light, vec3 ref_p, vec2 u, OUT(Sha
     vec3 e1 = vec3(light.v1) - p0;
     vec3 e2 = vec3(light.v2) - p0;
     s.uv = vec2(0.0f);
-    s.offset = uintBitsToFloat(light.ids.z);  // triangle_light (core/scene/area_lights.cpp)
+    s.offset = light.shadow_end;  // triangle_light (core/scene/area_lights.cpp)
     vec3 a;
     vec3 b;
     vec3 c;
@@ -224,7 +224,7 @@ FN bool sphere_is_whole(vec4 params) { return params.y <= -params.x && params.z 
 // Density in area (set's space) of sampling the quadric uniformly in its own space, where its set normal (quadric_set_normal)
 // has the length given.
 FN float quadric_pdf_area(IN(GeometryRecord) g, IN(TransformRecord) m, float normal_length) {
-    return abs(determinant_of(m.from0, m.from1, m.from2)) / (quadric_area(g.data.x, g.params) * normal_length);
+    return abs(determinant_of(m.from0, m.from1, m.from2)) / (quadric_area(g.kind, g.params) * normal_length);
 }
 
 // Uniform in area, in the quadric's own space.
@@ -254,8 +254,8 @@ FN float sphere_cone(vec4 params, vec3 ref_p) {
 // Whether all light of a whole sphere that reaches a point outside comes from the side that faces it: not where rays pass that side
 // and the far one emits inwards.
 FN bool sphere_hides_its_inside(IN(GeometryRecord) g) {
-    if (!HAS(EFFECT_ALPHA) || (g.ids.z == NONE && g.alpha.x >= 1.0f)) return true;
-    return (g.data.y & GEOMETRY_REVERSED) == 0u && (lights[g.ids.y].data.y & LIGHT_TWO_SIDED) == 0u;
+    if (!HAS(EFFECT_ALPHA) || (g.alpha_texture == NONE && g.alpha >= 1.0f)) return true;
+    return (g.flags & GEOMETRY_REVERSED) == 0u && (lights[g.first_light].flags & LIGHT_TWO_SIDED) == 0u;
 }
 
 // How much solid angle in the quadric's space a unit of solid angle is about a direction that the transform stretches so. Each
@@ -266,22 +266,22 @@ FN float sphere_cone_stretch(IN(TransformRecord) m, float stretch) {
 
 FN AreaSample sample_quadric_area(uint geometry, vec2 u) {
     GeometryRecord g = geometries[geometry];
-    vec3 p = sample_quadric_point(g.data.x, g.params, u);
+    vec3 p = sample_quadric_point(g.kind, g.params, u);
     AreaSample s;
     s.position = quadric_set_position(geometry, p, s.error);
     vec3 n = quadric_set_normal(geometry, p);
     float n_length = length_of(n);
     s.ng = n / n_length;
     s.uv = vec2(0.0f);
-    if (HAS(EFFECT_LIGHT_TEXTURES) || HAS(EFFECT_ALPHA)) s.uv = quadric_uv(g.data.x, g.params, p);
-    s.pdf = quadric_pdf_area(g, transforms[g.ids.w], n_length);
+    if (HAS(EFFECT_LIGHT_TEXTURES) || HAS(EFFECT_ALPHA)) s.uv = quadric_uv(g.kind, g.params, p);
+    s.pdf = quadric_pdf_area(g, transforms[g.transform], n_length);
     return s;
 }
 
 FN bool sample_quadric_light(uint geometry, vec3 ref_p, vec2 u, OUT(ShapeSample) s) {
     GeometryRecord g = geometries[geometry];
-    TransformRecord m = transforms[g.ids.w];
-    uint kind = g.data.x;
+    TransformRecord m = transforms[g.transform];
+    uint kind = g.kind;
     s.uv = vec2(0.0f);
     if (kind == GEOMETRY_SPHERE && sphere_is_whole(g.params) && sphere_hides_its_inside(g)) {
         vec3 o = transform_point(m.from0, m.from1, m.from2, ref_p);
@@ -324,8 +324,8 @@ FN bool sample_quadric_light(uint geometry, vec3 ref_p, vec2 u, OUT(ShapeSample)
 
 FN float pdf_quadric_light(uint geometry, vec3 ref_p, vec3 position, vec3 ng, vec3 wi) {
     GeometryRecord g = geometries[geometry];
-    TransformRecord m = transforms[g.ids.w];
-    uint kind = g.data.x;
+    TransformRecord m = transforms[g.transform];
+    uint kind = g.kind;
     if (kind == GEOMETRY_SPHERE && sphere_is_whole(g.params) && sphere_hides_its_inside(g)) {
         float one_minus_cos_max = sphere_cone(g.params, transform_point(m.from0, m.from1, m.from2, ref_p));
         if (one_minus_cos_max > 0.0f) {

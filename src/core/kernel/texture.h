@@ -25,19 +25,19 @@ FN float half_to_float(uint h) {
 
 // The linear value of one texel; x and y must be inside the image.
 FN vec3 image_texel(IN(ImageRecord) record, int x, int y) {
-    uint kind = record.data.w & 0xffu;
-    uint first = record.data.x;
-    uint index = uint(y) * record.data.y + uint(x);
+    uint kind = record.format & 0xffu;
+    uint first = record.first_texel;
+    uint index = uint(y) * record.width + uint(x);
     if (kind == TEXEL_RGBA8) {
         uint bytes = texels[first + index];
-        uint table = record.decode.x;
+        uint table = record.decoding;
         return vec3(uintBitsToFloat(texels[table + (bytes & 0xffu)]),
                     uintBitsToFloat(texels[table + ((bytes >> 8u) & 0xffu)]),
                     uintBitsToFloat(texels[table + ((bytes >> 16u) & 0xffu)]));
     }
     if (kind == TEXEL_R8) {
         uint code = (texels[first + (index >> 2u)] >> ((index & 3u) * 8u)) & 0xffu;
-        return vec3(uintBitsToFloat(texels[record.decode.x + code]));
+        return vec3(uintBitsToFloat(texels[record.decoding + code]));
     }
     if (kind == TEXEL_RGBA16F) {
         uint rg = texels[first + 2u * index];
@@ -59,12 +59,12 @@ FN float image_cut(float x, float size) {
 
 // One texel, at most two outside of the image, where the wrap mode says what is there.
 FN vec3 image_wrapped_texel(IN(ImageRecord) record, int x, int y) {
-    int width = int(record.data.y);
-    int height = int(record.data.z);
+    int width = int(record.width);
+    int height = int(record.height);
     int px = x;
     int py = y;
     if (x < 0 || y < 0 || x >= width || y >= height) {
-        uint wrap = (record.data.w >> 8u) & 0xffu;
+        uint wrap = (record.format >> 8u) & 0xffu;
         if (wrap == WRAP_BLACK) return vec3(0.0f);
         if (wrap == WRAP_REPEAT) {
             px = x < 0 ? x + width : (x >= width ? x - width : x);
@@ -90,11 +90,11 @@ FN vec3 image_wrapped_texel(IN(ImageRecord) record, int x, int y) {
 // w is 1. Texel centres lie at half-integers; filter and wrap mode are the image's.
 FN vec4 image_lookup(uint image, vec2 st) {
     ImageRecord record = images[image];
-    float width = float(record.data.y);
-    float height = float(record.data.z);
+    float width = float(record.width);
+    float height = float(record.height);
     vec2 p = st;
-    if (((record.data.w >> 8u) & 0xffu) == WRAP_REPEAT) p = vec2(st.x - floor(st.x), st.y - floor(st.y));
-    bool interpolated = (record.data.w >> 16u) != FILTER_POINT;
+    if (((record.format >> 8u) & 0xffu) == WRAP_REPEAT) p = vec2(st.x - floor(st.x), st.y - floor(st.y));
+    bool interpolated = (record.format >> 16u) != FILTER_POINT;
     float shift = interpolated ? 0.5f : 0.0f;
     float x = image_cut(p.x * width - shift, width);
     float y = image_cut(p.y * height - shift, height);
@@ -190,16 +190,16 @@ FN vec3 marble_spline(float at) {
 // value, plus the mean (0.2) of the first octave left out (pbrt, 4th edition, section 10.6.4 online, without a footprint).
 // TEXTURE_WINDY: waves times the strength of slow gusts. TEXTURE_DOTS: 1 in a dot: cells with positive noise have one, of radius
 // 0.35, shifted at random inside the cell. All are sums over one loop: a GLSL compiler copies noise_at for each call.
-FN vec3 texture_noise(uint op, uvec4 code, vec3 mapped) {
+FN vec3 texture_noise(uint op, vec3 mapped) {
     vec4 a = texture_ops[op].a;
-    uint kind = code.x;
+    uint kind = texture_ops[op].operation;
     bool dots = kind == TEXTURE_DOTS;
     bool windy = kind == TEXTURE_WINDY;
     vec3 p = kind == TEXTURE_MARBLE ? a.y * mapped : mapped;
     float roughness = windy ? 0.5f : a.x;
     vec3 cell = vec3(floor(p.x + 0.5f), floor(p.y + 0.5f), 0.5f);
     uint gusts = windy ? 3u : 0u;
-    uint count = dots ? 3u : code.w + gusts;
+    uint count = dots ? 3u : texture_ops[op].option + gusts;
     vec3 found = vec3(0.0f);  // of dots: noise at three places
     float gust = 0.0f;
     float sum = 0.0f;
@@ -216,7 +216,7 @@ FN vec3 texture_noise(uint op, uvec4 code, vec3 mapped) {
         if (dots)
             at =
                 cell + (i == 0u ? vec3(0.5f, 0.5f, 0.0f) : (i == 1u ? vec3(1.5f, 2.8f, 0.0f) : vec3(4.5f, 9.8f, 0.0f)));
-        float value = noise_at(code.z, at);
+        float value = noise_at(texture_ops[op].image, at);
         if (i == 0u)
             found.x = value;
         else if (i == 1u)
@@ -240,12 +240,12 @@ FN vec3 texture_noise(uint op, uvec4 code, vec3 mapped) {
 
 // ---- Programs ----------------------------------------------------------------------------------------------------------
 
-FN vec3 texture_image(uint op, uvec4 code, vec2 st) {
+FN vec3 texture_image(uint op, vec2 st) {
     vec4 a = texture_ops[op].a;
     // Texture coordinates have (0, 0) in the lower left corner, images in the upper left one.
-    vec4 found = image_lookup(code.z, vec2(st.x, 1.0f - st.y));
+    vec4 found = image_lookup(texture_ops[op].image, vec2(st.x, 1.0f - st.y));
     vec3 value = vec3(found.x * a.x, found.y * a.y, found.z * a.z);
-    if ((code.w & 1u) != 0u) value = max(vec3(1.0f) - value, vec3(0.0f));
+    if ((texture_ops[op].option & 1u) != 0u) value = max(vec3(1.0f) - value, vec3(0.0f));
     return value;
 }
 
@@ -258,14 +258,14 @@ RARE_FN vec3 texture_color(uint program, IN(TextureContext) c) {
     uint depth = 0u;  // of `stack`, without the top
     for (uint i = 0u; i < TEXTURE_LENGTH; ++i) {
         uint op = program + i;
-        uvec4 code = texture_ops[op].data;
-        uint kind = code.x;
-        uint mapping = code.y >> 8u;
+        uint kind = texture_ops[op].operation;
+        uint flags = texture_ops[op].flags;
+        uint mapping = flags >> 8u;
         vec3 mapped = vec3(0.0f);
         if (mapping != MAPPING_NONE) mapped = texture_mapped(op, mapping, c);
         vec3 noise = vec3(0.0f);
         if (HAS(EFFECT_NOISE) && ((kind >= TEXTURE_FBM && kind <= TEXTURE_MARBLE) || kind == TEXTURE_DOTS)) {
-            noise = texture_noise(op, code, mapped);
+            noise = texture_noise(op, mapped);
         }
         if (kind < TEXTURE_CHECKERBOARD) {
             if (i > 0u) {
@@ -274,7 +274,7 @@ RARE_FN vec3 texture_color(uint program, IN(TextureContext) c) {
             }
             vec4 a = texture_ops[op].a;
             top = kind >= TEXTURE_FBM ? noise : vec3(a.x, a.y, a.z);
-            if (HAS(EFFECT_IMAGES) && kind == TEXTURE_IMAGE) top = texture_image(op, code, vec2(mapped.x, mapped.y));
+            if (HAS(EFFECT_IMAGES) && kind == TEXTURE_IMAGE) top = texture_image(op, vec2(mapped.x, mapped.y));
         } else {
             depth = depth - 1u;
             vec3 first = stack[depth];
@@ -298,7 +298,7 @@ RARE_FN vec3 texture_color(uint program, IN(TextureContext) c) {
                       mapped.x * ((1.0f - mapped.y) * first + mapped.y * top);
             }
         }
-        if ((code.y & 1u) != 0u) return top;
+        if ((flags & 1u) != 0u) return top;
     }
     REPORT_UNFINISHED();
     return top;

@@ -111,7 +111,7 @@ FN bool bvh_walk(vec3 origin, vec3 direction, float t_max, bool any_hit, OUT(Hit
             d = transform_vector(instances[instance].transform.from0, instances[instance].transform.from1,
                                  instances[instance].transform.from2, direction);
             inverse = vec3(bvh_inverse(d.x), bvh_inverse(d.y), bvh_inverse(d.z));
-            node = bvh_is_finite(o, d) ? instances[instance].data.z : BVH_LEAVE_INSTANCE;
+            node = bvh_is_finite(o, d) ? instances[instance].root_node : BVH_LEAVE_INSTANCE;
         } else {
             uint first = node & 0x00ffffffu;
             uint end = first + ((node >> 24u) & 0x7fu);

@@ -23,7 +23,7 @@ bool ray_query_walk(vec3 origin, vec3 direction, float t_max, bool any_hit, OUT(
             float t_best = committed ? rayQueryGetIntersectionTEXT(query, true) : t_max;
             float t = 0.0f;
             bool found = false;
-            if (HAS(EFFECT_BILINEAR) && geometries[geometry].data.x == GEOMETRY_BILINEAR) {
+            if (HAS(EFFECT_BILINEAR) && geometries[geometry].kind == GEOMETRY_BILINEAR) {
                 vec2 uv;
                 found = bilinear_hit(geometry, primitive, o, d, t_best, t, uv);
             } else if (HAS(EFFECT_QUADRICS)) {

@@ -5,7 +5,7 @@
 // Whether an eye path may gather somewhere on a material. Photons are kept by this, not by what the photon's own visit shows of it:
 // which of a mix it met, or how rough a texture is a radius farther, is drawn again, or differs, where the eye path arrives.
 FN bool material_may_gather(uint material, float roughness) {
-    return materials[material].floats2.w >= max(roughness, GGX_SMOOTH);
+    return materials[material].roughest_alpha >= max(roughness, GGX_SMOOTH);
 }
 
 #endif

@@ -20,15 +20,15 @@
 #define LAMPYRIS_KERNEL_WALK
 
 struct Walk {
-    Ray ray;          // leaves the last vertex, or the last surface that let it pass
+    Ray ray;              // leaves the last vertex, or the last surface that let it pass
     Spectrum throughput;  // radiance: the weight of what arrives along the ray; importance: the power that it carries
-    float eta_scale;  // undoes the scaling of radiance on refraction: roulette must not see it
-    uint transport;   // TRANSPORT_*: radiance flows against the ray, importance along it
-    uint medium;      // that the ray is in
-    int depth;        // scattering vertices so far
-    int maxdepth;     // at most
-    uint passed;      // masks and interfaces so far
-    bool escaped;     // the ray left the scene
+    float eta_scale;      // undoes the scaling of radiance on refraction: roulette must not see it
+    uint transport;       // TRANSPORT_*: radiance flows against the ray, importance along it
+    uint medium;          // that the ray is in
+    int depth;            // scattering vertices so far
+    int maxdepth;         // at most
+    uint passed;          // masks and interfaces so far
+    bool escaped;         // the ray left the scene
 };
 
 // A point where the walk may scatter. Directions are local to `frame` (z: shading normal) and point away from the surface.

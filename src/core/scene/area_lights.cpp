@@ -52,7 +52,7 @@ void build_diffuse(AreaLightContext& context) {
         light.texture = context.build.textures.image_program(filename, glm::vec3(1.0f), reader.location("filename"));
         if (light.texture != kNone)
             light.texture_average =
-                context.build.textures.average(context.build.scene.texture_ops[light.texture].data.z);
+                context.build.textures.average(context.build.scene.texture_ops[light.texture].image);
         light.power_luminance = float(luminance_of(light.texture_average));
         context.build.ask(kernel::EFFECT_LIGHT_TEXTURES, light.asked_by);
         reader.find("L");
@@ -94,7 +94,7 @@ kernel::LightRecord triangle_light(const glm::vec3& p0, const glm::vec3& p1, con
     const bool smooth = (geometry_flags & kernel::GEOMETRY_HAS_NORMALS) != 0u;
     if (!smooth && (geometry_flags & kernel::GEOMETRY_FLIP) != 0u) normal = -normal;
     kernel::LightRecord light{};
-    light.data.x = kernel::LIGHT_TRIANGLE;
+    light.kind = kernel::LIGHT_TRIANGLE;
     light.v0 = {p0, float(0.5 * length)};
     light.normal = {normal, smooth ? 1.0f : 0.0f};
     light.v1 = {p1, float(radius)};
@@ -105,13 +105,13 @@ kernel::LightRecord triangle_light(const glm::vec3& p0, const glm::vec3& p1, con
     const glm::dvec3 e = glm::max(glm::abs(b - a), glm::abs(c - a)), u = glm::abs(b - a), v = glm::abs(c - a);
     const glm::dvec3 products(u.y * v.z + u.z * v.y, u.z * v.x + u.x * v.z, u.x * v.y + u.y * v.x);
     const double plane = length > 0.0 ? std::min(glm::dot(e, products) / length, 16.0 * (e.x + e.y + e.z)) : 0.0;
-    light.ids.z = std::bit_cast<uint32_t>(float((12.0 * glm::dot(n, most) + 6.0 * plane) * kHalfUlp));
+    light.shadow_end = float((12.0 * glm::dot(n, most) + 6.0 * plane) * kHalfUlp);
     return light;
 }
 
 void begin_area_lights(ShapeContext& context, uint32_t geometry, uint32_t primitive_count) {
     // Counted among the lights that are not infinite; build_scene moves it behind the infinite ones.
-    context.build.scene.geometries[geometry].ids.y = uint32_t(context.build.lights.size());
+    context.build.scene.geometries[geometry].first_light = uint32_t(context.build.lights.size());
     if (context.area_light->power > 0.0f && primitive_count > 1)
         context.build.diagnostics.warning(
             context.shape.location, fmt::format("each of the {} primitives emits the whole \"power\"", primitive_count),
@@ -128,18 +128,18 @@ void add_area_light(ShapeContext& context, kernel::LightRecord record, uint32_t 
         const float emitted = light.power_luminance * sides * nominal_area * std::numbers::pi_v<float>;
         radiance = emitted > 0.0f ? radiance * (light.power / emitted) : Spectrum(0.0f);
     }
-    record.data.y = light.two_sided ? kernel::LIGHT_TWO_SIDED : 0u;
+    record.flags = light.two_sided ? kernel::LIGHT_TWO_SIDED : 0u;
     const kernel::GeometryRecord& shape = context.build.scene.geometries[geometry];
-    if (shape.ids.z == kernel::NONE && shape.alpha.x == 0.0f) record.data.y |= kernel::LIGHT_PASSED;
-    record.data.z = light.texture;
-    record.data.w = kernel::NONE;
-    record.ids.x = geometry, record.ids.y = primitive;
-    record.emission = slot_of(radiance, 0.0f);
+    if (shape.alpha_texture == kernel::NONE && shape.alpha == 0.0f) record.flags |= kernel::LIGHT_PASSED;
+    record.image = light.texture;
+    record.transform = kernel::NONE;
+    record.geometry = geometry, record.primitive = primitive;
+    record.emission = radiance;
     const glm::dvec3 average =
         glm::dvec3(rgb_of(radiance)) * (light.texture == kNone ? glm::dvec3(1.0) : glm::dvec3(light.texture_average));
     context.build.lights.push_back(
         {record, luminance_of(average) * sides * area * std::numbers::pi, false, context.shape.location});
-    if (record.data.x == kernel::LIGHT_GEOMETRY) context.build.ask(kernel::EFFECT_QUADRIC_LIGHTS, light.asked_by);
+    if (record.kind == kernel::LIGHT_GEOMETRY) context.build.ask(kernel::EFFECT_QUADRIC_LIGHTS, light.asked_by);
 }
 
 }  // namespace lampyris

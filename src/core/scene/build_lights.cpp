@@ -24,8 +24,8 @@ void build_lights(BuildContext& context) {
         (*factory)(light_context);
         const uint32_t medium = context.medium(light.medium) << 16;
         for (size_t i = infinite; i < context.infinite_lights.size(); ++i)
-            context.infinite_lights[i].record.data.y |= medium;
-        for (size_t i = others; i < context.lights.size(); ++i) context.lights[i].record.data.y |= medium;
+            context.infinite_lights[i].record.flags |= medium;
+        for (size_t i = others; i < context.lights.size(); ++i) context.lights[i].record.flags |= medium;
         reader.finish("light");
     }
 }
@@ -36,13 +36,13 @@ void finish_lights(BuildContext& context) {
     std::vector<BuildContext::PendingLight> all = std::move(context.infinite_lights);
     all.insert(all.end(), context.lights.begin(), context.lights.end());
     for (kernel::GeometryRecord& geometry : scene.geometries)
-        if (geometry.ids.y != kernel::NONE) geometry.ids.y += infinite;
+        if (geometry.first_light != kernel::NONE) geometry.first_light += infinite;
 
     const double radius = double(scene.record.bounds.w);
     std::vector<double> powers;
     for (const auto& light : all) {
-        const kernel::vec4& emission = light.record.emission;
-        if (!std::isfinite(emission.x) || !std::isfinite(emission.y) || !std::isfinite(emission.z))
+        const Spectrum emission = light.record.emission;
+        if (!std::isfinite(emission[0]) || !std::isfinite(emission[1]) || !std::isfinite(emission[2]))
             context.diagnostics.error(light.location, "the light's emission is not finite", "smaller numbers");
         // Positions and directions are made with the transform in force; v0 of triangles is in the world already.
         const kernel::vec4 place = light.record.v0 + light.record.v1;

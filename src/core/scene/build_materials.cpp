@@ -15,12 +15,11 @@ constexpr const char* kUnsupported[] = {"subsurface", "hair", "measured"};
 
 kernel::MaterialRecord blank_material() {
     kernel::MaterialRecord record{};
-    record.data = {kernel::MATERIAL_DIFFUSE, 0u, kernel::NONE, kernel::NONE};
-    record.textures = kernel::uvec4(kernel::NONE);
-    record.textures2 = kernel::uvec4(kernel::NONE);
-    record.extra = {0u, 0u, kernel::NONE, kernel::NONE};
-    record.color0 = kernel::vec4(0.5f, 0.5f, 0.5f, 1.0f);
-    record.floats2.w = kRoughestDiffuse;
+    record.kind = kernel::MATERIAL_DIFFUSE;
+    forget_textures(record);
+    record.color0 = Spectrum(0.5f);
+    record.scale = 1.0f;
+    record.roughest_alpha = kRoughestDiffuse;
     return record;
 }
 

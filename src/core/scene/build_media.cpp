@@ -73,7 +73,7 @@ uint32_t BuildContext::medium(uint32_t description_index) {
         report_unknown(*this, medium);
     }
     uint32_t index = kernel::MEDIUM_VACUUM;
-    if (spectrum_of(record.sigma_a) != Spectrum(0.0f)) {
+    if (record.sigma_a != Spectrum(0.0f)) {
         if (scene.media.empty()) scene.media.emplace_back();  // empty space
         if (scene.media.size() < kernel::MEDIUM_COUNT) {
             index = uint32_t(scene.media.size());

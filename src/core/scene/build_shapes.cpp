@@ -17,19 +17,22 @@ uint32_t ShapeContext::add_geometry(uint32_t kind, uint32_t flags, uint32_t prim
     if (shape.reverse_orientation) flags |= kernel::GEOMETRY_REVERSED;
     if (shape.reverse_orientation != swaps_handedness(shape.world_from_object.matrix[0]))
         flags |= kernel::GEOMETRY_FLIP;
-    record.data = {kind, flags, 0u, 0u};
-    record.ids = {material, kernel::NONE, kernel::NONE, kernel::NONE};
-    record.attributes = {kernel::NONE, kernel::NONE, primitive_count,
-                         build.medium(shape.interior_medium) << 16 | build.medium(shape.exterior_medium)};
+    record.kind = kind;
+    record.flags = flags;
+    record.material = material;
+    record.first_light = record.alpha_texture = record.transform = kernel::NONE;
+    record.first_normal = record.first_uv = kernel::NONE;
+    record.primitive_count = primitive_count;
+    record.media = build.medium(shape.interior_medium) << 16 | build.medium(shape.exterior_medium);
     FloatSlot alpha = read_float(build, reader, "alpha");
     // A texture that is the same everywhere is that number: a light asks for it (LIGHT_PASSED), as pbrt-v4's do.
     if (alpha.texture != kNone) {
         const kernel::TextureOp& op = build.scene.texture_ops[alpha.texture];
-        if (op.data.x == kernel::TEXTURE_CONSTANT && (op.data.y & 1u) != 0u)
+        if (op.operation == kernel::TEXTURE_CONSTANT && (op.flags & 1u) != 0u)
             alpha = {std::clamp(op.a.x, 0.0f, 1.0f), kNone, true};
     }
-    record.ids.z = alpha.texture;
-    record.alpha.x = alpha.value;
+    record.alpha_texture = alpha.texture;
+    record.alpha = alpha.value;
     if (alpha.texture != kNone || alpha.value < 1.0f) build.ask(kernel::EFFECT_ALPHA, asked_by);
     build.scene.geometries.push_back(record);
     return uint32_t(build.scene.geometries.size() - 1);
@@ -59,19 +62,19 @@ Box set_bounds(const Scene& scene, const GeometrySet& set) {
     Box box;
     for (uint32_t i = set.first_geometry; i < set.first_geometry + set.geometry_count; ++i) {
         const kernel::GeometryRecord& g = scene.geometries[i];
-        if (g.data.x <= kernel::GEOMETRY_BILINEAR) {
-            const uint32_t corners = g.data.x == kernel::GEOMETRY_TRIANGLES ? 3 : 4;
-            for (uint32_t k = 0; k < g.attributes.z * corners; ++k) {
-                const size_t v = size_t(g.data.w) + scene.indices[g.data.z + k];
+        if (g.kind <= kernel::GEOMETRY_BILINEAR) {
+            const uint32_t corners = g.kind == kernel::GEOMETRY_TRIANGLES ? 3 : 4;
+            for (uint32_t k = 0; k < g.primitive_count * corners; ++k) {
+                const size_t v = size_t(g.first_vertex) + scene.indices[g.first_index + k];
                 box.add({scene.positions[3 * v], scene.positions[3 * v + 1], scene.positions[3 * v + 2]});
             }
         } else {
             Box own;
-            const bool disk = g.data.x == kernel::GEOMETRY_DISK;
+            const bool disk = g.kind == kernel::GEOMETRY_DISK;
             const double radius = disk ? g.params.y : g.params.x;
             own.add({-radius, -radius, disk ? g.params.x : g.params.y});
             own.add({radius, radius, disk ? g.params.x : g.params.z});
-            own.add_to(box, scene.transforms[g.ids.w]);
+            own.add_to(box, scene.transforms[g.transform]);
         }
     }
     return box;
@@ -157,7 +160,7 @@ class ShapeBuilder {
             return nullptr;
         };
         if (in_object) return ignore("the shape is a part of an instanced object");
-        if (context_.scene.materials[context_.material(shape.material)].data.x == kernel::MATERIAL_INTERFACE)
+        if (context_.scene.materials[context_.material(shape.material)].kind == kernel::MATERIAL_INTERFACE)
             return ignore("the shape's material is \"interface\"");
         return light->valid ? &*light : nullptr;
     }
@@ -189,7 +192,8 @@ void build_shapes(BuildContext& context) {
     scene.sets.push_back(builder.build(description.shapes, false));
     kernel::InstanceRecord world{};
     world.transform = transform_record(glm::mat4(1.0f));
-    world.data = {0u, scene.sets[0].geometry_count, kernel::NONE, 0u};
+    world.geometry_count = scene.sets[0].geometry_count;
+    world.root_node = kernel::NONE;
     scene.instances.push_back(world);
     scene.instance_sets.push_back(0);
 
@@ -216,7 +220,10 @@ void build_shapes(BuildContext& context) {
         if (set.geometry_count == 0) continue;
         kernel::InstanceRecord record{};
         record.transform = transform_record(matrix);
-        record.data = {set.first_geometry, set.geometry_count, kernel::NONE, swaps_handedness(matrix) ? 1u : 0u};
+        record.first_geometry = set.first_geometry;
+        record.geometry_count = set.geometry_count;
+        record.root_node = kernel::NONE;
+        record.swaps_handedness = swaps_handedness(matrix) ? 1u : 0u;
         Box box;
         object_boxes[instance.object].add_to(box, record.transform);
         if (box.too_far()) refuse_distance(context.diagnostics, instance.location, "instance");

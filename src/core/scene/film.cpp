@@ -90,7 +90,10 @@ void build_film(FilmContext& film) {
         build.diagnostics.error(where, message, "the window must not be empty, nor larger than the picture");
         crop = {0, 0, size[0], size[1]};
     }
-    film.record.film = {uint32_t(size[0]), uint32_t(size[1]), uint32_t(crop[0]), uint32_t(crop[1])};
+    film.record.resolution_x = uint32_t(size[0]);
+    film.record.resolution_y = uint32_t(size[1]);
+    film.record.crop_x = uint32_t(crop[0]);
+    film.record.crop_y = uint32_t(crop[1]);
     build.settings.crop = crop;
     build.settings.output = reader.get_string("filename");
     build.settings.save_half = reader.get_bool("savefp16");
@@ -102,9 +105,9 @@ void build_film(FilmContext& film) {
     const float open = camera.parameters.get_float("shutteropen", 0.0f, quiet),
                 close = camera.parameters.get_float("shutterclose", 1.0f, quiet);
     const float exposure = reader.has("exposuretime") ? reader.get_float("exposuretime") : std::abs(close - open);
-    film.record.lens.w = exposure > 0.0f ? exposure * reader.get_float("iso") / 100.0f : 1.0f;
+    film.record.imaging_ratio = exposure > 0.0f ? exposure * reader.get_float("iso") / 100.0f : 1.0f;
     const float largest = reader.get_float("maxcomponentvalue");
-    film.record.lens.z = std::isfinite(largest) && largest < 3e38f ? largest : 0.0f;
+    film.record.max_component = std::isfinite(largest) && largest < 3e38f ? largest : 0.0f;
     const std::string sensor = reader.get_string("sensor");
     if (sensor != "cie1931")
         build.diagnostics.unsupported(reader.location("sensor"), fmt::format("sensor \"{}\"", sensor),

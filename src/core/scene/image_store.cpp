@@ -166,7 +166,7 @@ uint32_t ImageStore::record(const Texels& t, ImageLookup lookup) {
     const std::array<uint32_t, 6> words{
         t.first, t.width, t.height, t.format | lookup.wrap << 8 | lookup.filtering << 16, t.decode, 0};
     const auto [found, is_new] = records_.try_emplace(words, uint32_t(scene_.images.size()));
-    if (is_new) scene_.images.push_back({{words[0], words[1], words[2], words[3]}, {words[4], 0, 0, 0}});
+    if (is_new) scene_.images.push_back({words[0], words[1], words[2], words[3], words[4], 0, 0, 0});
     return found->second;
 }
 
@@ -189,12 +189,12 @@ uint32_t ImageStore::add(const Image& image, TexelEncoding encoding, ImageLookup
 
 std::vector<glm::vec3> ImageStore::pixels(uint32_t image) const {
     const kernel::ImageRecord& record = scene_.images.at(image);
-    const uint32_t* words = scene_.texels.data() + record.data.x;
-    const uint32_t* table = scene_.texels.data() + record.decode.x;
+    const uint32_t* words = scene_.texels.data() + record.first_texel;
+    const uint32_t* table = scene_.texels.data() + record.decoding;
     const auto number = [](uint32_t bits) { return std::bit_cast<float>(bits); };
-    std::vector<glm::vec3> pixels(size_t(record.data.y) * record.data.z);
+    std::vector<glm::vec3> pixels(size_t(record.width) * record.height);
     for (size_t p = 0; p < pixels.size(); ++p) {
-        switch (record.data.w & 0xffu) {
+        switch (record.format & 0xffu) {
             case kernel::TEXEL_R8: pixels[p] = glm::vec3(number(table[words[p / 4] >> (8 * (p % 4)) & 0xffu])); break;
             case kernel::TEXEL_RGBA8:
                 for (int c = 0; c < 3; ++c) pixels[p][c] = number(table[words[p] >> (8 * c) & 0xffu]);

@@ -99,7 +99,7 @@ void choose_lights(Scene& scene, std::span<const double> powers) {
     scene.record.light_power = float(std::min(sum, double(std::numeric_limits<float>::max())));
     for (size_t i = 0; i < scene.lights.size(); ++i) {
         const uint32_t share = scene.distributions[offset + i + 1] - scene.distributions[offset + i];
-        scene.lights[i].emission.w = float(share / kTotal);
+        scene.lights[i].choice_probability = float(share / kTotal);
     }
 }
 

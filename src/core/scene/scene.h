@@ -15,6 +15,14 @@ struct GeometrySet {
     uint32_t first_geometry = 0, geometry_count = 0;
 };
 
+// No slot of the material has a texture.
+inline void forget_textures(kernel::MaterialRecord& m) {
+    m.bump_texture = m.normal_map = m.amount_texture = kernel::NONE;
+    m.color0_texture = m.color1_texture = m.color2_texture = kernel::NONE;
+    m.roughness_u_texture = m.roughness_v_texture = m.thickness_texture = kernel::NONE;
+    m.coat_roughness_u_texture = m.coat_roughness_v_texture = kernel::NONE;
+}
+
 // Arrays are those of core/kernel/scene_buffers.h, element for element (layouts in core/kernel/layout.h).
 struct Scene {
     kernel::SceneRecord record{};
@@ -46,8 +54,8 @@ struct Scene {
     std::vector<std::string> unsupported;  // with --skip-unsupported: what was left out
     uint64_t hash = 0;                     // of everything above
 
-    uint32_t width() const { return record.camera.film.x; }
-    uint32_t height() const { return record.camera.film.y; }
+    uint32_t width() const { return record.camera.resolution_x; }
+    uint32_t height() const { return record.camera.resolution_y; }
 };
 
 }  // namespace lampyris

@@ -7,10 +7,9 @@
 
 #include "core/error.h"
 #include "core/scene/description.h"
-#include "core/spectrum.h"
+#include "core/kernel_types.h"
 
 #include <glm/vec3.hpp>
-#include <glm/vec4.hpp>
 
 #include <functional>
 #include <optional>
@@ -19,13 +18,6 @@
 #include <vector>
 
 namespace lampyris {
-
-using kernel::Spectrum;
-inline Spectrum spectrum_of_rgb(glm::vec3 rgb) { return {rgb.x, rgb.y, rgb.z}; }
-inline glm::vec3 rgb_of(Spectrum s) { return {s[0], s[1], s[2]}; }
-// As a kernel's record holds it, with a fourth number that is something else (core/kernel/spectrum.h).
-inline Spectrum spectrum_of(glm::vec4 slot) { return {slot.x, slot.y, slot.z}; }
-inline glm::vec4 slot_of(Spectrum s, float fourth) { return {s[0], s[1], s[2], fourth}; }
 
 enum class SpectrumUse {
     kAlbedo,     // a reflectance: 0 to 1

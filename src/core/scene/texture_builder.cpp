@@ -15,7 +15,7 @@ namespace {
 const char* type_word(bool is_spectrum) { return is_spectrum ? "spectrum" : "float"; }
 
 uint64_t effects_of(const kernel::TextureOp& op) {
-    switch (op.data.x) {
+    switch (op.operation) {
         case kernel::TEXTURE_IMAGE: return kernel::EFFECT_IMAGES;
         case kernel::TEXTURE_FBM:
         case kernel::TEXTURE_WRINKLED:
@@ -161,12 +161,12 @@ uint32_t TextureBuilder::emit(const TextureProgram& program, Location where, con
     std::vector<kernel::TextureOp> ops = program.ops;
     for (kernel::TextureOp& op : ops) {
         if (const uint64_t effects = effects_of(op)) context_.scene.effects.ask(effects, asked_by);
-        if (effects_of(op) == kernel::EFFECT_NOISE) op.data.z = images().noise_permutation();
-        if (op.data.x != kernel::TEXTURE_IMAGE) continue;
-        op.data.z = load(requests_[op.data.z]);
-        if (op.data.z == kNone) return kNone;
+        if (effects_of(op) == kernel::EFFECT_NOISE) op.image = images().noise_permutation();
+        if (op.operation != kernel::TEXTURE_IMAGE) continue;
+        op.image = load(requests_[op.image]);
+        if (op.image == kNone) return kNone;
     }
-    ops.back().data.y |= 1u;
+    ops.back().flags |= 1u;
     const uint32_t first = uint32_t(context_.scene.texture_ops.size());
     context_.scene.texture_ops.insert(context_.scene.texture_ops.end(), ops.begin(), ops.end());
     return first;
@@ -192,12 +192,13 @@ uint32_t TextureBuilder::image_program(const std::string& filename, glm::vec3 sc
         image_programs_.try_emplace(fmt::format("{} {} {} {}", scale.x, scale.y, scale.z, filename), kNone);
     if (!is_new) return found->second;
     kernel::TextureOp op{};
-    op.data = {kernel::TEXTURE_IMAGE, kernel::MAPPING_UV << 8, 0, 0};
+    op.operation = kernel::TEXTURE_IMAGE;
+    op.flags = kernel::MAPPING_UV << 8;
     op.a = glm::vec4(scale, 0.0f);
     op.m0 = {1.0f, 1.0f, 0.0f, 0.0f};
     ImageRequest request{context_.resolve(filename), {}, {kernel::WRAP_CLAMP, kernel::FILTER_BILINEAR}, where};
     request.encoding.emits = true;
-    op.data.z = request_image(std::move(request));
+    op.image = request_image(std::move(request));
     TextureProgram program;
     program.ops.push_back(op);
     found->second = emit(program, where, "image");

@@ -39,7 +39,7 @@ glm::vec4 planar_row(const TextureContext& context, const glm::dmat4& m, const c
 
 TextureProgram constant_program(glm::vec3 value) {
     kernel::TextureOp op{};
-    op.data.x = kernel::TEXTURE_CONSTANT;
+    op.operation = kernel::TEXTURE_CONSTANT;
     op.a = glm::vec4(value, 0.0f);
     TextureProgram program;
     program.ops.push_back(op);
@@ -58,18 +58,18 @@ TextureProgram TextureContext::combine(const std::vector<TextureProgram>& operan
     // What is known already is not computed at every hit.
     const bool all_constant =
         std::all_of(operands.begin(), operands.end(), [](const TextureProgram& p) { return p.is_constant(); });
-    if (op.data.x == kernel::TEXTURE_SCALE && all_constant)
+    if (op.operation == kernel::TEXTURE_SCALE && all_constant)
         return constant_program(operands[0].constant() * operands[1].constant());
-    if (op.data.x == kernel::TEXTURE_MIX && all_constant) {
+    if (op.operation == kernel::TEXTURE_MIX && all_constant) {
         const float amount = operands[2].constant().x;
         return constant_program((1.0f - amount) * operands[0].constant() + amount * operands[1].constant());
     }
-    if (op.data.x == kernel::TEXTURE_SCALE) {
+    if (op.operation == kernel::TEXTURE_SCALE) {
         for (int i = 0; i < 2; ++i) {
             const TextureProgram& image = operands[size_t(i)];
             const TextureProgram& scale = operands[size_t(1 - i)];
-            if (!scale.is_constant() || image.ops.size() != 1 || image.ops[0].data.x != kernel::TEXTURE_IMAGE ||
-                (image.ops[0].data.w & 1u))
+            if (!scale.is_constant() || image.ops.size() != 1 || image.ops[0].operation != kernel::TEXTURE_IMAGE ||
+                (image.ops[0].option & 1u))
                 continue;
             TextureProgram scaled = image;
             scaled.ops[0].a = glm::vec4(glm::vec3(scaled.ops[0].a) * scale.constant(), 0.0f);
@@ -105,7 +105,7 @@ void TextureContext::read_mapping(kernel::TextureOp& op) {
     for (uint32_t i = 0; i < std::size(kMappings); ++i)
         if (mapping == kMappings[i]) kind = kernel::MAPPING_UV + i;
     if (kind == kernel::MAPPING_UV) {
-        op.data.y |= kind << 8;
+        op.flags |= kind << 8;
         op.m0.x = reader.get_float("uscale");
         op.m0.y = reader.get_float("vscale");
         op.m0.z = reader.get_float("udelta");
@@ -113,7 +113,7 @@ void TextureContext::read_mapping(kernel::TextureOp& op) {
         return;
     }
     if (kind == kernel::MAPPING_PLANAR) {
-        op.data.y |= kind << 8;
+        op.flags |= kind << 8;
         const glm::dmat4 m = texture_from_world(*this);
         op.m0 = planar_row(*this, m, "v1", {1.0, 0.0, 0.0}, reader.get_float("udelta"));
         op.m1 = planar_row(*this, m, "v2", {0.0, 1.0, 0.0}, reader.get_float("vdelta"));
@@ -125,7 +125,7 @@ void TextureContext::read_mapping(kernel::TextureOp& op) {
 void TextureContext::read_position_mapping(kernel::TextureOp& op) { read_transform(op, kernel::MAPPING_SPACE); }
 
 void TextureContext::read_transform(kernel::TextureOp& op, uint32_t mapping) {
-    op.data.y |= mapping << 8;
+    op.flags |= mapping << 8;
     const glm::dmat4 m = texture_from_world(*this);
     op.m0 = row(m, 0);
     op.m1 = row(m, 1);

@@ -21,7 +21,7 @@ class TextureBuilder;
 struct TextureProgram {
     std::vector<kernel::TextureOp> ops;
     uint32_t depth = 1;  // of the stack that it needs
-    bool is_constant() const { return ops.size() == 1 && ops[0].data.x == kernel::TEXTURE_CONSTANT; }
+    bool is_constant() const { return ops.size() == 1 && ops[0].operation == kernel::TEXTURE_CONSTANT; }
     glm::vec3 constant() const { return glm::vec3(ops[0].a); }
 };
 TextureProgram constant_program(glm::vec3 value);

@@ -77,7 +77,7 @@ void build_view(BuildContext& context) {
     SceneDescription& description = context.description;
     kernel::CameraRecord& record = context.scene.record.camera;
     // The camera's shutter is open for that long; a Film's "exposuretime" overrides it.
-    record.lens.w = 1.0f;
+    record.imaging_ratio = 1.0f;
     build_entity(context, film_registry(), description.film, "rgb", [&](FilmFactory factory, ParameterReader& reader) {
         FilmContext film{context, reader, record};
         factory(film);
@@ -101,7 +101,7 @@ void build_view(BuildContext& context) {
                                         camera,
                                         reader,
                                         record,
-                                        glm::vec2(record.film.x, record.film.y),
+                                        glm::vec2(record.resolution_x, record.resolution_y),
                                         {&context, &camera, "Camera"}};
                      factory(view);
                  });

@@ -31,7 +31,7 @@ KERNEL(photon_map_rays) {
         uint y = w.y + index / w.width;
         // Rays of all passes are one stratified set.
         Sampler numbers =
-            sampler_begin(y * scene[0].camera.film.x + x, w.first_sample, w.seed ^ GATHER_STREAM, w.sampler_kind);
+            sampler_begin(y * scene[0].camera.resolution_x + x, w.first_sample, w.seed ^ GATHER_STREAM, w.sampler_kind);
         EyePath path = eye_path_begin(ray_of(s.position, direction), hit_medium(hit));
         path.walk.depth = int(hit_number(hit)) - 1;
         // A specular lobe here is the eye path's: what comes over it is followed from the camera.

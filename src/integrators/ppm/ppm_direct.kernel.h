@@ -36,8 +36,8 @@ KERNEL(ppm_direct) {
         Surface s = hit_surface(hit);
         Vertex v = vertex_at(s, direction);
         // The points of all passes are one stratified set.
-        Sampler numbers = sampler_begin(y * scene[0].camera.film.x + x, pass * points + point, w.seed ^ DIRECT_STREAM,
-                                        w.sampler_kind);
+        Sampler numbers = sampler_begin(y * scene[0].camera.resolution_x + x, pass * points + point,
+                                        w.seed ^ DIRECT_STREAM, w.sampler_kind);
         // A light without extent is found in the same direction again.
         v.bsdf.walk = hash_combine(numbers.key, numbers.index);
         uint u_light = 0u;

@@ -23,8 +23,8 @@ CONST uint EYE_BRANCH_FOLLOWS = 2u;  // follows the coat's reflection, and has n
 struct EyePath {
     Walk walk;
     vec3 start;
-    Spectrum radiance;    // found on the way
-    float travelled;  // length so far, in scene units
+    Spectrum radiance;  // found on the way
+    float travelled;    // length so far, in scene units
 };
 
 FN EyePath eye_path_begin(IN(Ray) ray, uint medium) {
@@ -50,7 +50,7 @@ FN uint eye_vertex_dimension(IN(Walk) walk) { return CAMERA_DIMENSIONS + uint(wa
 FN float pixel_footprint(float distance) {
     CameraRecord camera = scene[0].camera;
     float step = max(abs(camera.screen.z), abs(camera.screen.w));
-    return camera.data.x == CAMERA_ORTHOGRAPHIC ? step : step * distance;
+    return camera.kind == CAMERA_ORTHOGRAPHIC ? step : step * distance;
 }
 
 // Goes on from the vertex at s by one of its lobes; false where the path ends.

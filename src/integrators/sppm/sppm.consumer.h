@@ -14,7 +14,7 @@ BUFFER_RW(18, vec4, biases)
 struct Gathered {
     HitPoint point;
     float over_radius_squared;
-    vec4 sum;   // BSDF times power; w: photons
+    vec4 sum;       // BSDF times power; w: photons
     Spectrum bias;  // what of the sum the radius has brought in: see gather_add
 };
 

@@ -49,7 +49,7 @@ KERNEL(sppm_resolve) {
         }
         if ((i + 1u) % branches != 0u) continue;  // the branches of a path are one sample
         if (film_add(pixel, film_sensor(radiance), hit_filter_weight(hit), passes[0].number))
-            film_add_bias(film_bias[index], rgb_of(bias) * scene[0].camera.lens.w, hit_filter_weight(hit));
+            film_add_bias(film_bias[index], rgb_of(bias) * scene[0].camera.imaging_ratio, hit_filter_weight(hit));
         radiance = Spectrum(0.0f);
         bias = Spectrum(0.0f);
     }

@@ -9,15 +9,15 @@ namespace {
 
 void build(MaterialContext& context) {
     kernel::MaterialRecord& record = context.record;
-    record.data.x = kernel::MATERIAL_COATEDCONDUCTOR;
+    record.kind = kernel::MATERIAL_COATEDCONDUCTOR;
     read_conductor(context, "conductor.");
     const Roughness base = read_base_roughness(context, "conductor."), coat = read_roughness(context, "interface.");
-    record.floats2.y = coat.u.value, record.floats2.z = coat.v.value;
-    record.textures2.z = coat.u.texture, record.textures2.w = coat.v.texture;
-    const bool remapped = record.data.y & kernel::MATERIAL_REMAP;
-    if (remapped) record.data.y |= kernel::MATERIAL_REMAP_COAT;
+    record.coat_roughness_u = coat.u.value, record.coat_roughness_v = coat.v.value;
+    record.coat_roughness_u_texture = coat.u.texture, record.coat_roughness_v_texture = coat.v.texture;
+    const bool remapped = record.flags & kernel::MATERIAL_REMAP;
+    if (remapped) record.flags |= kernel::MATERIAL_REMAP_COAT;
     if (!coat.smooth()) context.ask(kernel::EFFECT_ROUGH);
-    record.floats2.w = std::max(roughest_alpha(base, remapped), roughest_alpha(coat, remapped));
+    record.roughest_alpha = std::max(roughest_alpha(base, remapped), roughest_alpha(coat, remapped));
     read_coat(context, "interface.eta");
     read_surface_detail(context);
 }

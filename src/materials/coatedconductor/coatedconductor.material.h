@@ -6,8 +6,9 @@
 
 // The record has n + ik of the bare metal: under the coat both are relative to the coat's index.
 FN Bsdf coatedconductor_make(IN(MaterialRecord) m) {
-    Bsdf b = coat_make(m, roughness_alpha(m.floats2.y, m.floats2.z, (m.data.y & MATERIAL_REMAP_COAT) != 0u));
-    b.flags = m.data.y;
+    Bsdf b =
+        coat_make(m, roughness_alpha(m.coat_roughness_u, m.coat_roughness_v, (m.flags & MATERIAL_REMAP_COAT) != 0u));
+    b.flags = m.flags;
     Spectrum n;
     Spectrum k;
     conductor_index(m, n, k);

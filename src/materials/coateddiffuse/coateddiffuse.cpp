@@ -7,11 +7,10 @@ namespace {
 
 void build(MaterialContext& context) {
     kernel::MaterialRecord& record = context.record;
-    record.data.x = kernel::MATERIAL_COATEDDIFFUSE;
-    set_color0(context,
-               read_color(context.build, context.reader, "reflectance", SpectrumUse::kAlbedo, Spectrum(0.5f)));
+    record.kind = kernel::MATERIAL_COATEDDIFFUSE;
+    set_color0(context, read_color(context.build, context.reader, "reflectance", SpectrumUse::kAlbedo, Spectrum(0.5f)));
     read_base_roughness(context, "");
-    record.floats2.w = kRoughestDiffuse;  // the base
+    record.roughest_alpha = kRoughestDiffuse;  // the base
     read_coat(context, "eta");
     read_surface_detail(context);
 }

@@ -6,8 +6,8 @@
 
 FN Bsdf coateddiffuse_make(IN(MaterialRecord) m) {
     Bsdf b = coat_make(m, record_roughness(m));
-    b.flags = m.data.y;
-    b.color0 = bounded_share(spectrum_of(m.color0));
+    b.flags = m.flags;
+    b.color0 = bounded_share(m.color0);
     if (clear_coat_applies(b)) b.inner = clear_coat_inner_reflectance(b.eta, b.thickness);
     return b;
 }

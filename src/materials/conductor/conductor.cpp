@@ -7,10 +7,10 @@ namespace {
 
 void build(MaterialContext& context) {
     kernel::MaterialRecord& record = context.record;
-    record.data.x = kernel::MATERIAL_CONDUCTOR;
+    record.kind = kernel::MATERIAL_CONDUCTOR;
     read_conductor(context, "");
     const Roughness roughness = read_base_roughness(context, "");
-    record.floats2.w = roughest_alpha(roughness, record.data.y & kernel::MATERIAL_REMAP);
+    record.roughest_alpha = roughest_alpha(roughness, record.flags & kernel::MATERIAL_REMAP);
     read_surface_detail(context);
 }
 

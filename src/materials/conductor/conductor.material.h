@@ -57,9 +57,9 @@ FN Spectrum conductor_k_of_reflectance(Spectrum reflectance) {
 
 // n + ik of a record, relative to the outside.
 FN void conductor_index(IN(MaterialRecord) m, OUT(Spectrum) n, OUT(Spectrum) k) {
-    n = spectrum_of(m.color0);
-    k = spectrum_of(m.color1);
-    if ((m.data.y & MATERIAL_USES_REFLECTANCE) != 0u) {
+    n = m.color0;
+    k = m.color1;
+    if ((m.flags & MATERIAL_USES_REFLECTANCE) != 0u) {
         k = conductor_k_of_reflectance(n);
         n = Spectrum(1.0f);
     }
@@ -69,7 +69,7 @@ FN void conductor_index(IN(MaterialRecord) m, OUT(Spectrum) n, OUT(Spectrum) k) 
 
 FN Bsdf conductor_make(IN(MaterialRecord) m) {
     Bsdf b = no_bsdf();
-    b.flags = m.data.y & MATERIAL_ENERGY_COMPENSATION;
+    b.flags = m.flags & MATERIAL_ENERGY_COMPENSATION;
     Spectrum n;
     Spectrum k;
     conductor_index(m, n, k);

@@ -7,11 +7,11 @@ namespace {
 
 void build(MaterialContext& context) {
     kernel::MaterialRecord& record = context.record;
-    record.data.x = kernel::MATERIAL_DIELECTRIC;
+    record.kind = kernel::MATERIAL_DIELECTRIC;
     context.ask(kernel::EFFECT_DIELECTRIC);
-    record.floats.z = read_eta(context, "eta");
+    record.eta = read_eta(context, "eta");
     const Roughness roughness = read_base_roughness(context, "");
-    record.floats2.w = roughest_alpha(roughness, record.data.y & kernel::MATERIAL_REMAP);
+    record.roughest_alpha = roughest_alpha(roughness, record.flags & kernel::MATERIAL_REMAP);
     read_surface_detail(context);
 }
 

@@ -30,7 +30,8 @@ FN float rough_refraction_pdf(vec2 alpha, float eta, vec3 o, float d, float do_m
     return ggx_visible_scale(o, alpha) * d * abs(do_m * di_m) * eta * eta / length2;
 }
 
-FN Spectrum dielectric_lobe_eval(vec2 alpha, float eta_up, vec3 wo, vec3 wi, uint transport, uint lobes, OUT(float) pdf) {
+FN Spectrum dielectric_lobe_eval(vec2 alpha, float eta_up, vec3 wo, vec3 wi, uint transport, uint lobes,
+                                 OUT(float) pdf) {
     pdf = 0.0f;
     if (dielectric_lobe_is_specular(alpha, eta_up)) return Spectrum(0.0f);
     bool below = wo.z < 0.0f;
@@ -104,7 +105,7 @@ FN bool dielectric_lobe_sample(vec2 alpha, float eta_up, vec3 wo, float uc, vec2
 
 FN Bsdf dielectric_make(IN(MaterialRecord) m) {
     Bsdf b = no_bsdf();
-    b.eta = bounded_eta(m.floats.z);
+    b.eta = bounded_eta(m.eta);
     b.alpha = record_alpha(m);
     return b;
 }

@@ -6,10 +6,9 @@ namespace lampyris {
 namespace {
 
 void build(MaterialContext& context) {
-    context.record.data.x = kernel::MATERIAL_DIFFUSE;
-    context.record.floats2.w = kRoughestDiffuse;
-    set_color0(context,
-               read_color(context.build, context.reader, "reflectance", SpectrumUse::kAlbedo, Spectrum(0.5f)));
+    context.record.kind = kernel::MATERIAL_DIFFUSE;
+    context.record.roughest_alpha = kRoughestDiffuse;
+    set_color0(context, read_color(context.build, context.reader, "reflectance", SpectrumUse::kAlbedo, Spectrum(0.5f)));
     read_surface_detail(context);
 }
 

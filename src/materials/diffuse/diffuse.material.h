@@ -24,7 +24,7 @@ FN bool diffuse_lobe_sample(Spectrum reflectance, vec3 wo, vec2 u, INOUT(BsdfSam
 
 FN Bsdf diffuse_make(IN(MaterialRecord) m) {
     Bsdf b = no_bsdf();
-    b.color0 = bounded_share(spectrum_of(m.color0));
+    b.color0 = bounded_share(m.color0);
     return b;
 }
 

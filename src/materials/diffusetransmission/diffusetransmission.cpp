@@ -6,14 +6,14 @@ namespace lampyris {
 namespace {
 
 void build(MaterialContext& context) {
-    context.record.data.x = kernel::MATERIAL_DIFFUSETRANSMISSION;
-    context.record.floats2.w = kRoughestDiffuse;
+    context.record.kind = kernel::MATERIAL_DIFFUSETRANSMISSION;
+    context.record.roughest_alpha = kRoughestDiffuse;
     context.ask(kernel::EFFECT_DIFFUSE_TRANSMISSION);
     set_color0(context,
                read_color(context.build, context.reader, "reflectance", SpectrumUse::kAlbedo, Spectrum(0.25f)));
     set_color1(context,
                read_color(context.build, context.reader, "transmittance", SpectrumUse::kAlbedo, Spectrum(0.25f)));
-    context.record.color0.w = context.reader.get_float("scale");
+    context.record.scale = context.reader.get_float("scale");
     read_surface_detail(context);
 }
 

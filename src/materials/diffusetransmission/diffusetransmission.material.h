@@ -4,8 +4,8 @@
 
 FN Bsdf diffusetransmission_make(IN(MaterialRecord) m) {
     Bsdf b = no_bsdf();
-    b.color0 = bounded_share(m.color0.w * spectrum_of(m.color0));
-    b.color1 = bounded_share(m.color0.w * spectrum_of(m.color1));
+    b.color0 = bounded_share(m.scale * m.color0);
+    b.color1 = bounded_share(m.scale * m.color1);
     return b;
 }
 

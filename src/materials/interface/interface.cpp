@@ -6,8 +6,8 @@ namespace lampyris {
 namespace {
 
 void build(MaterialContext& context) {
-    context.record.data.x = kernel::MATERIAL_INTERFACE;
-    context.record.floats2.w = kNeverGathers;
+    context.record.kind = kernel::MATERIAL_INTERFACE;
+    context.record.roughest_alpha = kNeverGathers;
     context.ask(kernel::EFFECT_INTERFACE);
 }
 

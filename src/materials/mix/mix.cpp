@@ -20,10 +20,10 @@ uint32_t mix_depth(const BuildContext& build, uint32_t material) {
 
 // How rough the roughest of its materials gets, of those that it shows at all.
 float roughest_of_both(const kernel::MaterialRecord& mix, const std::vector<kernel::MaterialRecord>& materials) {
-    const bool constant = mix.extra.z == kNone;
+    const bool constant = mix.amount_texture == kNone;
     float roughest = kNeverGathers;
-    if (!constant || mix.floats.x < 1.0f) roughest = materials[mix.extra.x].floats2.w;
-    if (!constant || mix.floats.x > 0.0f) roughest = std::max(roughest, materials[mix.extra.y].floats2.w);
+    if (!constant || mix.amount < 1.0f) roughest = materials[mix.first_material].roughest_alpha;
+    if (!constant || mix.amount > 0.0f) roughest = std::max(roughest, materials[mix.second_material].roughest_alpha);
     return roughest;
 }
 
@@ -35,12 +35,12 @@ void refuse_depth(MaterialContext& context) {
 void build(MaterialContext& context) {
     kernel::MaterialRecord& record = context.record;
     BuildContext& build = context.build;
-    record.data.x = kernel::MATERIAL_MIX;
+    record.kind = kernel::MATERIAL_MIX;
     context.ask(kernel::EFFECT_MATERIAL_MIX);
     const FloatSlot amount = read_float(build, context.reader, "amount");
-    record.floats.x = amount.value;
-    record.extra.z = amount.texture;
-    record.extra.x = record.extra.y = 0;
+    record.amount = amount.value;
+    record.amount_texture = amount.texture;
+    record.first_material = record.second_material = 0;
     uint32_t depth = 1;
     const Parameter* parameter = context.reader.find("materials");
     if (!parameter) return;  // told as a missing parameter
@@ -75,14 +75,15 @@ void build(MaterialContext& context) {
             refuse_depth(context);
             return;
         }
-        record.extra[i] = build.material(index, context.path);
-        depth = std::max(depth, 1 + mix_depth(build, record.extra[i]));
+        const uint32_t material = build.material(index, context.path);
+        (i == 0 ? record.first_material : record.second_material) = material;
+        depth = std::max(depth, 1 + mix_depth(build, material));
     }
     if (depth > kMostMixes) {
         refuse_depth(context);
         depth = 0;
     }
-    if (!build.diagnostics.has_errors()) record.floats2.w = roughest_of_both(record, build.scene.materials);
+    if (!build.diagnostics.has_errors()) record.roughest_alpha = roughest_of_both(record, build.scene.materials);
     // Materials are appended when they are finished, so this one's index is the next.
     build.mix_depths[uint32_t(build.scene.materials.size())] = depth;
 }

@@ -21,11 +21,11 @@ FN float mix_choice(vec3 position, vec3 wo, uint material) {
 // Replaces a mix in s.material by the material that it shows here. wo: world space.
 RARE_FN void mix_resolve(INOUT(Surface) s, vec3 wo) {
     for (uint i = 0u; i < MIX_DEPTH; ++i) {
-        if (materials[s.material].data.x != MATERIAL_MIX) return;
-        uvec4 extra = materials[s.material].extra;
-        float amount =
-            extra.z == NONE ? materials[s.material].floats.x : texture_float(extra.z, surface_texture_context(s));
-        s.material = mix_choice(s.position, wo, s.material) < amount ? extra.y : extra.x;
+        if (materials[s.material].kind != MATERIAL_MIX) return;
+        MaterialRecord m = materials[s.material];
+        float amount = m.amount;
+        if (m.amount_texture != NONE) amount = texture_float(m.amount_texture, surface_texture_context(s));
+        s.material = mix_choice(s.position, wo, s.material) < amount ? m.second_material : m.first_material;
     }
     REPORT_UNFINISHED();
 }

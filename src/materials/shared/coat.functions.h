@@ -8,13 +8,13 @@
 // A coat of the given roughness over nothing yet.
 FN Bsdf coat_make(IN(MaterialRecord) m, vec2 alpha) {
     Bsdf b = no_bsdf();
-    b.eta = bounded_eta(m.floats.z);
+    b.eta = bounded_eta(m.eta);
     b.alpha = ggx_alpha(alpha.x, alpha.y);
-    b.thickness = clamp(m.floats2.x, 1e-20f, 1e20f);
-    b.albedo = bounded_share(spectrum_of(m.color2));
-    b.g = clamp(m.floats.w, -0.99f, 0.99f);
-    b.max_depth = m.extra.x;
-    b.samples = max(m.extra.y, 1u);
+    b.thickness = clamp(m.thickness, 1e-20f, 1e20f);
+    b.albedo = bounded_share(m.color2);
+    b.g = clamp(m.g, -0.99f, 0.99f);
+    b.max_depth = m.max_depth;
+    b.samples = max(m.samples, 1u);
     return b;
 }
 

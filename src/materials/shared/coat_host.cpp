@@ -8,15 +8,15 @@ void read_coat(MaterialContext& context, const std::string& eta) {
     ParameterReader& reader = context.reader;
     context.ask(kernel::EFFECT_LAYERED_COAT);
     context.ask(kernel::EFFECT_DIELECTRIC);
-    record.floats.z = read_eta(context, eta);
+    record.eta = read_eta(context, eta);
     const FloatSlot thickness = read_float(context.build, reader, "thickness");
-    record.floats2.x = thickness.value;
-    record.textures2.y = thickness.texture;
-    record.floats.w = reader.get_float("g");
+    record.thickness = thickness.value;
+    record.thickness_texture = thickness.texture;
+    record.g = reader.get_float("g");
     set_color2(context, read_color(context.build, reader, "albedo", SpectrumUse::kAlbedo, Spectrum(0.0f)));
-    if (reader.get_bool("exactcoat")) record.data.y |= kernel::MATERIAL_EXACT_COAT;
-    record.extra.x = uint32_t(reader.get_int("maxdepth"));
-    record.extra.y = uint32_t(reader.get_int("nsamples"));
+    if (reader.get_bool("exactcoat")) record.flags |= kernel::MATERIAL_EXACT_COAT;
+    record.max_depth = uint32_t(reader.get_int("maxdepth"));
+    record.samples = uint32_t(reader.get_int("nsamples"));
 }
 
 ParameterSpecs with_coat(ParameterSpecs specs) {

@@ -17,23 +17,23 @@ ParameterSpecs with_surface_detail(ParameterSpecs specs) {
 }
 
 void read_surface_detail(MaterialContext& context) {
-    context.record.data.z = kernel::NONE;
-    context.record.data.w = kernel::NONE;
+    context.record.bump_texture = kernel::NONE;
+    context.record.normal_map = kernel::NONE;
     if (const Parameter* bump = context.reader.find("displacement")) {
         const auto* names = std::get_if<std::vector<std::string>>(&bump->values);
         if (bump->type != ParameterType::kTexture || !names || names->size() != 1) {
             context.reader.error("displacement", "\"displacement\" must name one float texture",
                                  "\"texture displacement\" \"name\"");
         } else {
-            context.record.data.z = context.build.textures.float_program(names->front(), bump->value_location);
+            context.record.bump_texture = context.build.textures.float_program(names->front(), bump->value_location);
             context.ask(kernel::EFFECT_TEXTURES);
             context.ask(kernel::EFFECT_BUMP);
         }
     }
     const std::string map = context.reader.get_string("normalmap");
     if (!map.empty()) {
-        context.record.data.w = context.build.textures.image(map, TextureBuilder::Content::kNormalMap,
-                                                             context.reader.location("normalmap"));
+        context.record.normal_map = context.build.textures.image(map, TextureBuilder::Content::kNormalMap,
+                                                                 context.reader.location("normalmap"));
         context.ask(kernel::EFFECT_BUMP);
         context.ask(kernel::EFFECT_IMAGES);
     }
@@ -60,9 +60,9 @@ Roughness read_roughness(MaterialContext& context, const std::string& prefix) {
 Roughness read_base_roughness(MaterialContext& context, const std::string& prefix) {
     kernel::MaterialRecord& record = context.record;
     const Roughness roughness = read_roughness(context, prefix);
-    record.floats.x = roughness.u.value, record.floats.y = roughness.v.value;
-    record.textures.w = roughness.u.texture, record.textures2.x = roughness.v.texture;
-    if (context.reader.get_bool("remaproughness")) record.data.y |= kernel::MATERIAL_REMAP;
+    record.roughness_u = roughness.u.value, record.roughness_v = roughness.v.value;
+    record.roughness_u_texture = roughness.u.texture, record.roughness_v_texture = roughness.v.texture;
+    if (context.reader.get_bool("remaproughness")) record.flags |= kernel::MATERIAL_REMAP;
     if (!roughness.smooth()) context.ask(kernel::EFFECT_ROUGH);
     return roughness;
 }
@@ -110,16 +110,16 @@ float read_eta(MaterialContext& context, std::string_view name) {
 }
 
 void set_color0(MaterialContext& context, const ColorSlot& slot) {
-    context.record.color0 = slot_of(slot.value, context.record.color0.w);
-    context.record.textures.x = slot.texture;
+    context.record.color0 = slot.value;
+    context.record.color0_texture = slot.texture;
 }
 void set_color1(MaterialContext& context, const ColorSlot& slot) {
-    context.record.color1 = slot_of(slot.value, 0.0f);
-    context.record.textures.y = slot.texture;
+    context.record.color1 = slot.value;
+    context.record.color1_texture = slot.texture;
 }
 void set_color2(MaterialContext& context, const ColorSlot& slot) {
-    context.record.color2 = slot_of(slot.value, 0.0f);
-    context.record.textures.z = slot.texture;
+    context.record.color2 = slot.value;
+    context.record.color2_texture = slot.texture;
 }
 
 void add_conductor(ParameterSpecs& specs, const std::string& prefix) {
@@ -138,14 +138,14 @@ void read_conductor(MaterialContext& context, const std::string& prefix) {
     ParameterReader& reader = context.reader;
     const std::string eta = prefix + "eta", k = prefix + "k";
     context.ask(kernel::EFFECT_CONDUCTOR);
-    if (reader.get_bool("energycompensation")) context.record.data.y |= kernel::MATERIAL_ENERGY_COMPENSATION;
+    if (reader.get_bool("energycompensation")) context.record.flags |= kernel::MATERIAL_ENERGY_COMPENSATION;
     if (reader.has("reflectance")) {
         if (reader.has(eta) || reader.has(k))
             reader.error("reflectance",
                          fmt::format("both \"reflectance\" and \"{}\" are given", reader.has(eta) ? eta : k),
                          "one of them");
         reader.find(eta), reader.find(k);
-        context.record.data.y |= kernel::MATERIAL_USES_REFLECTANCE;
+        context.record.flags |= kernel::MATERIAL_USES_REFLECTANCE;
         set_color0(context, read_color(context.build, reader, "reflectance", SpectrumUse::kAlbedo, Spectrum(0.5f)));
         return;
     }

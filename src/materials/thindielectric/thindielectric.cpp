@@ -6,10 +6,10 @@ namespace lampyris {
 namespace {
 
 void build(MaterialContext& context) {
-    context.record.data.x = kernel::MATERIAL_THINDIELECTRIC;
-    context.record.floats2.w = kNeverGathers;
+    context.record.kind = kernel::MATERIAL_THINDIELECTRIC;
+    context.record.roughest_alpha = kNeverGathers;
     context.ask(kernel::EFFECT_THIN_DIELECTRIC);
-    context.record.floats.z = read_eta(context, "eta");
+    context.record.eta = read_eta(context, "eta");
     read_surface_detail(context);
 }
 

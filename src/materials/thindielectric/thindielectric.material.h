@@ -4,7 +4,7 @@
 
 FN Bsdf thindielectric_make(IN(MaterialRecord) m) {
     Bsdf b = no_bsdf();
-    b.eta = bounded_eta(m.floats.z);
+    b.eta = bounded_eta(m.eta);
     return b;
 }
 

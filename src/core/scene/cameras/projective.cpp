@@ -42,12 +42,12 @@ std::array<float, 4> screen_window(CameraContext& camera) {
 void build_projection(CameraContext& camera, uint32_t kind, float scale) {
     const std::array<float, 4> window = screen_window(camera);
     kernel::CameraRecord& record = camera.record;
-    record.data.x = kind;
+    record.kind = kind;
     record.screen = {scale * window[0], scale * window[3], scale * (window[1] - window[0]) / camera.resolution.x,
                      scale * (window[2] - window[3]) / camera.resolution.y};
-    record.lens.x = camera.reader.get_float("lensradius");
-    record.lens.y = camera.reader.get_float("focaldistance");
-    if (record.lens.x > 0.0f) camera.build.ask(kernel::EFFECT_DEPTH_OF_FIELD, camera.asked_by);
+    record.lens_radius = camera.reader.get_float("lensradius");
+    record.focal_distance = camera.reader.get_float("focaldistance");
+    if (record.lens_radius > 0.0f) camera.build.ask(kernel::EFFECT_DEPTH_OF_FIELD, camera.asked_by);
     const float open = camera.reader.get_float("shutteropen"), close = camera.reader.get_float("shutterclose");
     if (open > close)
         camera.reader.warning("shutterclose", "the shutter closes before it opens: the two are swapped, as in pbrt-v4");

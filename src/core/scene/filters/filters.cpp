@@ -10,8 +10,9 @@ namespace lampyris {
 namespace {
 
 void set_radius(FilterContext& context, uint32_t kind) {
-    context.record.data.y = kind;
-    context.record.filtering = {context.reader.get_float("xradius"), context.reader.get_float("yradius"), 0.0f, 0.0f};
+    context.record.filter_kind = kind;
+    context.record.filter_radius_x = context.reader.get_float("xradius");
+    context.record.filter_radius_y = context.reader.get_float("yradius");
 }
 
 void build_box(FilterContext& context) { set_radius(context, kernel::PIXEL_FILTER_BOX); }
@@ -20,16 +21,16 @@ void build_triangle(FilterContext& context) { set_radius(context, kernel::PIXEL_
 template <typename F>
 void set_table(FilterContext& context, F&& f) {
     set_radius(context, kernel::PIXEL_FILTER_GAUSSIAN);
-    const double rx = context.record.filtering.x, ry = context.record.filtering.y;
+    const double rx = context.record.filter_radius_x, ry = context.record.filter_radius_y;
     std::vector<uint32_t>& distributions = context.build.scene.distributions;
     try {
-        context.record.data.z = append_filter_table([&](double x) { return f(x, rx); }, rx,
-                                                    [&](double y) { return f(y, ry); }, ry, distributions);
-        context.record.data.w = kFilterTableSize;
+        context.record.filter_tables = append_filter_table([&](double x) { return f(x, rx); }, rx,
+                                                           [&](double y) { return f(y, ry); }, ry, distributions);
+        context.record.filter_intervals = kFilterTableSize;
     } catch (const std::invalid_argument& error) {
         context.build.diagnostics.error(context.reader.entity().location, "the filter's integral is not positive",
                                         "other parameters");
-        context.record.data.y = kernel::PIXEL_FILTER_BOX;
+        context.record.filter_kind = kernel::PIXEL_FILTER_BOX;
     }
 }
 

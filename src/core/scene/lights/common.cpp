@@ -9,7 +9,8 @@ double luminance_of(Spectrum s) { return luminance_of(glm::dvec3(rgb_of(s))); }
 
 kernel::LightRecord blank_light(uint32_t kind) {
     kernel::LightRecord record{};
-    record.data = {kind, 0u, kernel::NONE, kernel::NONE};
+    record.kind = kind;
+    record.image = record.transform = kernel::NONE;
     return record;
 }
 

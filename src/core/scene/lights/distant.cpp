@@ -18,7 +18,7 @@ void build(LightContext& context) {
     Spectrum irradiance = read_emission(context, "L");
     if (const float illuminance = context.reader.get_float("illuminance"); illuminance > 0.0f)
         irradiance *= illuminance;
-    record.emission = slot_of(irradiance, 0.0f);
+    record.emission = irradiance;
     context.ask(kernel::EFFECT_DISTANT_LIGHTS);
     context.build.lights.push_back({record, luminance_of(irradiance) * std::numbers::pi, true, context.light.location});
 }

@@ -19,18 +19,18 @@ bool begin_light(LightContext& context, kernel::LightRecord& record, TextureBuil
     context.ask(kernel::EFFECT_PROJECTION_LIGHTS);
     if (filename.empty()) return false;
     const glm::mat4& m = context.light.world_from_light.matrix[0];
-    record.data.z = context.build.textures.image(filename, content, context.reader.location("filename"));
-    record.data.w = context.build.add_transform(m, context.light.location);
+    record.image = context.build.textures.image(filename, content, context.reader.location("filename"));
+    record.transform = context.build.add_transform(m, context.light.location);
     record.v0 = {transformed_point(m, glm::vec3(0.0f)), 0.0f};
     context.ask(kernel::EFFECT_IMAGES);
-    return record.data.z != kNone;
+    return record.image != kNone;
 }
 
 void add_light(LightContext& context, kernel::LightRecord& record, Spectrum scale, double emitted) {
     if (const float power = context.reader.get_float("power"); power > 0.0f) {
         scale = emitted > 0.0 ? scale * float(power / emitted) : Spectrum(0.0f);
     }
-    record.emission = slot_of(scale, 0.0f);
+    record.emission = scale;
     context.build.lights.push_back({record, luminance_of(scale) * emitted, false, context.light.location});
 }
 
@@ -39,14 +39,14 @@ void build_projection(LightContext& context) {
     const float scale = context.reader.get_float("scale");
     const double half = std::tan(double(context.reader.get_float("fov")) * std::numbers::pi / 360.0);
     if (!begin_light(context, record, TextureBuilder::Content::kProjection)) return;
-    const kernel::ImageRecord& image = context.build.scene.images[record.data.z];
-    const uint32_t width = image.data.y, height = image.data.z;
+    const kernel::ImageRecord& image = context.build.scene.images[record.image];
+    const uint32_t width = image.width, height = image.height;
     const double aspect = double(width) / height;
     // The field of view is that of the shorter side, as a camera's.
     const double x = half * std::fmax(aspect, 1.0), y = half * std::fmax(1.0 / aspect, 1.0);
     record.v2 = {float(-x), float(-y), float(x), float(y)};
     // Luminous power: intensity over solid angle, which is cos^3 per area of the picture at z = 1.
-    const std::vector<glm::vec3> pixels = context.build.textures.pixels(record.data.z);
+    const std::vector<glm::vec3> pixels = context.build.textures.pixels(record.image);
     double emitted = 0.0;
     for (uint32_t j = 0; j < height; ++j)
         for (uint32_t i = 0; i < width; ++i) {
@@ -68,13 +68,13 @@ void build_goniometric(LightContext& context) {
         add_light(context, record, intensity, 4.0 * kPi);
         return;
     }
-    const kernel::ImageRecord& image = context.build.scene.images[record.data.z];
-    if (image.data.y != image.data.z) {
-        context.reader.error("filename", fmt::format("the image is {}x{}", image.data.y, image.data.z),
+    const kernel::ImageRecord& image = context.build.scene.images[record.image];
+    if (image.width != image.height) {
+        context.reader.error("filename", fmt::format("the image is {}x{}", image.width, image.height),
                              "goniometric lights take square images in the equal-area octahedral mapping");
         return;
     }
-    add_light(context, record, intensity, 4.0 * kPi * luminance_of(context.build.textures.average(record.data.z)));
+    add_light(context, record, intensity, 4.0 * kPi * luminance_of(context.build.textures.average(record.image)));
 }
 
 const RegisterLight projection(

@@ -27,11 +27,10 @@ float octahedral_z(float s, float t) {
 
 void build_constant(LightContext& context, float scale) {
     kernel::LightRecord record = blank_light(kernel::LIGHT_INFINITE);
-    Spectrum radiance =
-        scale * read_spectrum(context.build, context.reader, "L", SpectrumUse::kLight, Spectrum(1.0f));
+    Spectrum radiance = scale * read_spectrum(context.build, context.reader, "L", SpectrumUse::kLight, Spectrum(1.0f));
     if (const float illuminance = context.reader.get_float("illuminance"); illuminance > 0.0f)
         radiance *= illuminance / kPi;
-    record.emission = slot_of(radiance, 0.0f);
+    record.emission = radiance;
     context.ask(kernel::EFFECT_ENVIRONMENT);
     context.build.infinite_lights.push_back(
         {record, luminance_of(radiance) * 4.0 * std::numbers::pi * std::numbers::pi, true, context.light.location});
@@ -41,10 +40,10 @@ void build_image(LightContext& context, const std::string& filename, float scale
     BuildContext& build = context.build;
     kernel::LightRecord record = blank_light(kernel::LIGHT_INFINITE_IMAGE);
     const Location where = context.reader.location("filename");
-    record.data.z = build.textures.image(filename, TextureBuilder::Content::kEnvironment, where);
-    if (record.data.z == kNone) return;
-    const kernel::ImageRecord& image = build.scene.images[record.data.z];
-    const uint32_t width = image.data.y, height = image.data.z;
+    record.image = build.textures.image(filename, TextureBuilder::Content::kEnvironment, where);
+    if (record.image == kNone) return;
+    const kernel::ImageRecord& image = build.scene.images[record.image];
+    const uint32_t width = image.width, height = image.height;
     if (width != height) {
         context.reader.error("filename", fmt::format("the image is {}x{}", width, height),
                              "infinite lights take square images in the equal-area octahedral mapping, as pbrt-v4 does "
@@ -53,7 +52,7 @@ void build_image(LightContext& context, const std::string& filename, float scale
     }
     std::vector<float> weights;
     double average = 0.0, falling = 0.0;  // luminance over the sphere; over its upper half, by the cosine
-    const std::vector<glm::vec3> pixels = build.textures.pixels(record.data.z);
+    const std::vector<glm::vec3> pixels = build.textures.pixels(record.image);
     weights.reserve(pixels.size());
     for (uint32_t y = 0; y < height; ++y)
         for (uint32_t x = 0; x < width; ++x) {
@@ -72,10 +71,9 @@ void build_image(LightContext& context, const std::string& filename, float scale
         const double given = falling * 4.0 * std::numbers::pi / double(pixels.size());
         scale = given > 0.0 ? float(double(scale) * illuminance / given) : 0.0f;
     }
-    record.data.w = build.add_transform(context.light.world_from_light.matrix[0], context.light.location);
-    record.ids = {append_image_distribution(weights, width, height, kEvenLightShare, build.scene.distributions), width,
-                  height, 0u};
-    record.emission = {glm::vec3(scale), 0.0f};
+    record.transform = build.add_transform(context.light.world_from_light.matrix[0], context.light.location);
+    record.distribution = append_image_distribution(weights, width, height, kEvenLightShare, build.scene.distributions);
+    record.emission = Spectrum(scale);
     context.ask(kernel::EFFECT_ENVIRONMENT);
     context.ask(kernel::EFFECT_ENVIRONMENT_IMAGE);
     context.ask(kernel::EFFECT_IMAGES);

@@ -15,7 +15,7 @@ constexpr float kPi = std::numbers::pi_v<float>;
 // `sphere` is what an intensity of one sends in all, in sr.
 void add_light(LightContext& context, kernel::LightRecord record, Spectrum intensity, float sphere) {
     if (const float power = context.reader.get_float("power"); power > 0.0f) intensity *= power / sphere;
-    record.emission = slot_of(intensity, 0.0f);
+    record.emission = intensity;
     context.ask(kernel::EFFECT_POINT_LIGHTS);
     context.build.lights.push_back({record, luminance_of(intensity) * sphere, false, context.light.location});
 }

@@ -22,7 +22,7 @@ void build(MediumContext& context) {
     const Spectrum emission = reader.get_float("Lescale") * spectrum("Le", SpectrumUse::kLight, 0.0f);
     reader.get_float("g");
     const bool is_preset = !reader.get_string("preset").empty();
-    context.record.sigma_a = slot_of(absorption, 0.0f);
+    context.record.sigma_a = absorption;
     if (!std::isfinite(absorption[0] + absorption[1] + absorption[2]))
         reader.error("sigma_a", "\"sigma_a\" times \"scale\" is not finite", "smaller numbers");
     if (is_preset) {

@@ -66,11 +66,11 @@ void add_lights(ShapeContext& context, const Mesh& mesh, uint32_t geometry) {
         kernel::LightRecord light{};
         double area;
         if (mesh.corners == 3) {
-            light = triangle_light(p[0], p[1], p[2], context.build.scene.geometries[geometry].data.y);
+            light = triangle_light(p[0], p[1], p[2], context.build.scene.geometries[geometry].flags);
             area = double(light.v0.w);
         } else {
             area = patch_area(p[0], p[1], p[2], p[3]);
-            light.data.x = kernel::LIGHT_GEOMETRY;
+            light.kind = kernel::LIGHT_GEOMETRY;
         }
         add_area_light(context, light, geometry, uint32_t(face), float(area), float(area));
     }
@@ -210,10 +210,10 @@ void add_usable(ShapeContext& context, Mesh&& mesh) {
     const uint32_t kind = mesh.corners == 3 ? kernel::GEOMETRY_TRIANGLES : kernel::GEOMETRY_BILINEAR;
     const uint32_t index = context.add_geometry(kind, flags, uint32_t(mesh.indices.size() / mesh.corners));
     kernel::GeometryRecord& geometry = scene.geometries[index];
-    geometry.data.z = uint32_t(scene.indices.size());
-    geometry.data.w = uint32_t(scene.positions.size() / 3);
-    geometry.attributes.x = mesh.normals.empty() ? kernel::NONE : uint32_t(scene.normals.size() / 3);
-    geometry.attributes.y = mesh.uvs.empty() ? kernel::NONE : uint32_t(scene.uvs.size() / 2);
+    geometry.first_index = uint32_t(scene.indices.size());
+    geometry.first_vertex = uint32_t(scene.positions.size() / 3);
+    geometry.first_normal = mesh.normals.empty() ? kernel::NONE : uint32_t(scene.normals.size() / 3);
+    geometry.first_uv = mesh.uvs.empty() ? kernel::NONE : uint32_t(scene.uvs.size() / 2);
     if (context.area_light) add_lights(context, mesh, index);
     append(scene.indices, std::move(mesh.indices));
     append(scene.positions, std::move(mesh.positions));

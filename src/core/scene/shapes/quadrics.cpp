@@ -22,11 +22,11 @@ void add_quadric(ShapeContext& context, uint32_t kind, kernel::vec4 params, floa
     const uint32_t index = context.add_geometry(kind, 0u, 1u);
     kernel::GeometryRecord& geometry = context.build.scene.geometries[index];
     geometry.params = params;
-    geometry.ids.w = context.build.add_transform(matrix, context.shape.location);
+    geometry.transform = context.build.add_transform(matrix, context.shape.location);
     if (!context.area_light) return;
     begin_area_lights(context, index, 1u);
     kernel::LightRecord light{};
-    light.data.x = kernel::LIGHT_GEOMETRY;
+    light.kind = kernel::LIGHT_GEOMETRY;
     const float stretch = mean_stretch(matrix);
     add_area_light(context, light, index, 0u, area * stretch * stretch, area);
 }

@@ -11,7 +11,7 @@ const RegisterTexture registration(
                   value("v11", ParameterType::kSpectrum, "1", "at (1, 1)")}),
     [](TextureContext& context) {
         kernel::TextureOp op{};
-        op.data.x = kernel::TEXTURE_BILERP;
+        op.operation = kernel::TEXTURE_BILERP;
         context.read_mapping(op);
         return context.combine({context.operand("v00", 0.0f), context.operand("v01", 1.0f),
                                 context.operand("v10", 0.0f), context.operand("v11", 1.0f)},

@@ -7,7 +7,7 @@ namespace {
 
 TextureProgram make(TextureContext& context) {
     kernel::TextureOp op{};
-    op.data.x = kernel::TEXTURE_CHECKERBOARD;
+    op.operation = kernel::TEXTURE_CHECKERBOARD;
     if (context.reader.get_int("dimension") == 3)
         context.read_position_mapping(op);
     else

@@ -18,7 +18,7 @@ TextureProgram make(TextureContext& context) {
         return constant_program(glm::vec3(0.5f));
     }
     kernel::TextureOp op{};
-    op.data.x = kernel::TEXTURE_DIRECTION_MIX;
+    op.operation = kernel::TEXTURE_DIRECTION_MIX;
     op.a = glm::vec4(glm::vec3(direction / length), 0.0f);
     return context.combine({context.operand("tex1", 0.0f), context.operand("tex2", 1.0f)}, op);
 }

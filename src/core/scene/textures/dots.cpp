@@ -11,7 +11,7 @@ const RegisterTexture registration(
                   value("outside", ParameterType::kSpectrum, "0", "between them").textured()}),
     [](TextureContext& context) {
         kernel::TextureOp op{};
-        op.data.x = kernel::TEXTURE_DOTS;
+        op.operation = kernel::TEXTURE_DOTS;
         context.read_mapping(op);
         return context.combine({context.operand("inside", 1.0f), context.operand("outside", 0.0f)}, op);
     });

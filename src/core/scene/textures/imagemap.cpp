@@ -31,7 +31,7 @@ TextureProgram make(TextureContext& context) {
     ParameterReader& reader = context.reader;
     TextureProgram program = constant_program(glm::vec3(reader.get_float("scale")));
     kernel::TextureOp& op = program.ops[0];
-    op.data.w = reader.get_bool("invert") ? 1u : 0u;
+    op.option = reader.get_bool("invert") ? 1u : 0u;
     context.read_mapping(op);
 
     ImageLookup lookup;
@@ -51,8 +51,8 @@ TextureProgram make(TextureContext& context) {
         if (reader.has("filename")) reader.error("filename", "\"filename\" is empty", "the name of an image file");
         return constant_program(glm::vec3(0.5f));
     }
-    op.data.x = kernel::TEXTURE_IMAGE;
-    op.data.z = context.builder.request_image(
+    op.operation = kernel::TEXTURE_IMAGE;
+    op.image = context.builder.request_image(
         {context.builder.context().resolve(filename), encoding, lookup, reader.location("filename")});
     return program;
 }

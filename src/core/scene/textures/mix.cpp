@@ -10,7 +10,7 @@ const RegisterTexture registration(
      real("amount", 0.5, "share of tex2").textured()},
     [](TextureContext& context) {
         kernel::TextureOp op{};
-        op.data.x = kernel::TEXTURE_MIX;
+        op.operation = kernel::TEXTURE_MIX;
         return context.combine(
             {context.operand("tex1", 0.0f), context.operand("tex2", 1.0f), context.float_operand("amount", 0.5f)}, op);
     });

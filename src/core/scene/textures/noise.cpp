@@ -16,11 +16,11 @@ TextureProgram program_of(TextureContext& context, uint32_t kind, bool is_spectr
     }
     TextureProgram program = constant_program(glm::vec3(0.0f));
     kernel::TextureOp& op = program.ops[0];
-    op.data.x = kind;
+    op.operation = kind;
     context.read_position_mapping(op);
-    op.data.w = 6;  // of windy's waves
+    op.option = 6;  // of windy's waves
     if (kind == kernel::TEXTURE_WINDY) return program;
-    op.data.w = uint32_t(context.reader.get_int("octaves"));
+    op.option = uint32_t(context.reader.get_int("octaves"));
     op.a.x = context.reader.get_float("roughness");
     if (kind == kernel::TEXTURE_MARBLE) {
         op.a.y = context.reader.get_float("scale");

@@ -9,7 +9,7 @@ const RegisterTexture registration(
      real("scale", 1.0, "its factor").textured()},
     [](TextureContext& context) {
         kernel::TextureOp op{};
-        op.data.x = kernel::TEXTURE_SCALE;
+        op.operation = kernel::TEXTURE_SCALE;
         return context.combine({context.operand("tex", 1.0f), context.float_operand("scale", 1.0f)}, op);
     });
 
