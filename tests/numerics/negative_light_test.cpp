@@ -93,9 +93,9 @@ TEST(NegativeLight, SpectraMakeNone) {
         SCOPED_TRACE(spectrum);
         const BuiltText built = build_world(std::string("LightSource \"infinite\" ") + spectrum + "\n");
         EXPECT_TRUE(built.errors.empty()) << built.all_errors();
-        const kernel::vec4& emission = built.scene().lights.at(0).emission;
-        EXPECT_GE(std::min({emission.x, emission.y, emission.z}), 0.0f);
-        EXPECT_GT(std::max({emission.x, emission.y, emission.z}), 0.0f);
+        const Spectrum emission = built.scene().lights.at(0).emission;
+        EXPECT_GE(std::min({emission[0], emission[1], emission[2]}), 0.0f);
+        EXPECT_GT(std::max({emission[0], emission[1], emission[2]}), 0.0f);
         const bool negative = std::string(spectrum).find("-1") != std::string::npos;
         EXPECT_EQ(built.warnings.size(), negative ? 1u : 0u);
         if (negative) {

@@ -42,7 +42,7 @@ FN void gather_end(IN(Gathered) g, uint query) {
     for (; i < count; ++i) {
         PhotonRecord photon = nearest_photon(i);
         r.found.y = 31u * r.found.y + photon.place.w;  // depends on the order, too
-        r.sum.x += photon_power(photon).x;
+        r.sum.x += photon_power(photon)[0];
     }
     if (i != count) REPORT_UNFINISHED();
     results[query] = r;

@@ -1,5 +1,5 @@
 // Scattering at surfaces: what a material does with light, as evaluation, density and sampling over all kinds. The materials
-// are in src/materials; the build writes from their folders what asks them (materials/dispatch.h).
+// are in src/materials; from their folders the build writes what calls them (src/materials/dispatch.h.in).
 //
 // docs/kernels-scattering.md says which paper each model is from, and where it departs from pbrt's.
 #ifndef LAMPYRIS_KERNEL_BSDF
