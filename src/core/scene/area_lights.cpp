@@ -99,8 +99,9 @@ kernel::LightRecord triangle_light(const glm::vec3& p0, const glm::vec3& p1, con
     light.normal = {normal, smooth ? 1.0f : 0.0f};
     light.v1 = {p1, float(radius)};
     light.v2 = {p2, 1.0f / light.v0.w};
-    // How far along the normal shadow rays end, anywhere on the triangle (as way_out and triangle_plane_error say it for a point): by the
-    // rounding of its corners' coordinates, and of its plane as tracers find it from one of them.
+    // The distance from the triangle, along its normal, at which shadow rays to it end. It is large enough for any point of the
+    // triangle (way_out and triangle_plane_error bound a single point): it covers the rounding of the corners' coordinates, and
+    // that of the plane as tracers find it from one of them.
     const glm::dvec3 most = glm::max(glm::abs(a), glm::max(glm::abs(b), glm::abs(c))), n = glm::abs(normal);
     const glm::dvec3 e = glm::max(glm::abs(b - a), glm::abs(c - a)), u = glm::abs(b - a), v = glm::abs(c - a);
     const glm::dvec3 products(u.y * v.z + u.z * v.y, u.z * v.x + u.x * v.z, u.x * v.y + u.y * v.x);

@@ -13,7 +13,7 @@ namespace lampyris {
 
 namespace {
 
-// FNV-1a over 8-byte words (Fowler, Noll, Vo): tells scenes apart, no more.
+// FNV-1a over 8-byte words (Fowler, Noll, Vo). It only serves to tell scenes apart.
 void mix_hash(uint64_t& hash, const void* data, size_t bytes) {
     const auto* at = static_cast<const unsigned char*>(data);
     for (; bytes > 0;) {
@@ -71,7 +71,7 @@ BuiltScene build_scene(SceneDescription&& description, const BuildOptions& optio
     build_view(context);
     build_shapes(context);
     build_lights(context);
-    context.textures.define_all();  // mistakes in textures that nothing uses are told, too
+    context.textures.define_all();  // mistakes in unused textures are reported, too
     context.check_unused_materials();
     context.check_unused_media();
     finish_lights(context);

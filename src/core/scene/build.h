@@ -1,4 +1,4 @@
-// SceneDescription -> Scene + Effects: what the directives mean, as flat arrays for any device.
+// SceneDescription -> Scene + Effects: turns the directives into flat arrays that any device can use.
 #pragma once
 
 #include "core/error.h"
@@ -20,7 +20,7 @@ struct BuildOptions {
 
 // What the scene file says about the run rather than about the world.
 struct SceneSettings {
-    bool media = true;  // false: left out, as pbrt-v4's "path" does
+    bool media = true;  // false: ignored, as by pbrt-v4's "path"
     Entity integrator;  // "path" where the file names none; its parameters are read by the integrator
     // How pbrt's sampler was mapped: SAMPLER_* kind by name.
     std::string sampler = "independent";  // "independent" or "sobol" (Owen-scrambled)
@@ -37,8 +37,8 @@ struct BuiltScene {
     SceneSettings settings;
 };
 
-// Consumes the description: meshes are moved, not copied. Errors are collected in `diagnostics`; look at
-// has_errors() before using the result. Whether what is not supported is an error is the diagnostics' setting.
+// Consumes the description: meshes are moved, not copied. Errors are collected in `diagnostics`; check has_errors() before
+// using the result. The diagnostics' settings decide whether an unsupported feature is an error.
 BuiltScene build_scene(SceneDescription&& description, const BuildOptions& options, Diagnostics& diagnostics);
 
 }  // namespace lampyris

@@ -44,7 +44,7 @@ void finish_lights(BuildContext& context) {
         const Spectrum emission = light.record.emission;
         if (!std::isfinite(emission[0]) || !std::isfinite(emission[1]) || !std::isfinite(emission[2]))
             context.diagnostics.error(light.location, "the light's emission is not finite", "smaller numbers");
-        // Positions and directions are made with the transform in force; v0 of triangles is in the world already.
+        // Positions and directions are computed with the current transform; v0 of triangles is in world space already.
         const kernel::vec4 place = light.record.v0 + light.record.v1;
         if (!std::isfinite(place.x + place.y + place.z) ||
             std::abs(place.x) + std::abs(place.y) + std::abs(place.z) > 8.0f * kLargestCoordinate)
@@ -52,7 +52,7 @@ void finish_lights(BuildContext& context) {
                                       "the transform in force here scales by 0, or numbers are out of range?");
         scene.lights.push_back(light.record);
         const double power = light.power * (light.scales_with_scene ? radius * radius : 1.0);
-        powers.push_back(std::isfinite(power) ? power : 0.0);  // what is not finite was told above
+        powers.push_back(std::isfinite(power) ? power : 0.0);  // not finite: reported above
     }
     scene.record.light_count = uint32_t(all.size());
     scene.record.infinite_lights = infinite;

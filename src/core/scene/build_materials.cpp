@@ -1,4 +1,4 @@
-// Materials: from descriptions to records, when a shape first asks for one.
+// Materials: from descriptions to records, built when a shape first needs one.
 #include "core/scene/builder.h"
 
 #include <fmt/format.h>
@@ -10,7 +10,7 @@ namespace lampyris {
 
 namespace {
 
-// Materials of pbrt-v4 that Lampyris does not simulate; grey takes their place where that is skipped.
+// Materials of pbrt-v4 that Lampyris does not simulate; grey replaces them with --skip-unsupported.
 constexpr const char* kUnsupported[] = {"subsurface", "hair", "measured"};
 
 kernel::MaterialRecord blank_material() {
@@ -69,7 +69,7 @@ uint32_t BuildContext::material(uint32_t description_index, const std::vector<ui
     kernel::MaterialRecord record = blank_material();
     if (description_index != kNone) {
         MaterialDescription& material = description.materials[description_index];
-        // pbrt-v4 still takes the older names.
+        // pbrt-v4 still accepts the older names.
         if (material.type.empty() || material.type == "none") material.type = "interface";
         const MaterialFactory* factory = material_registry().find(material.type);
         if (factory) {

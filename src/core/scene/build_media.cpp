@@ -1,4 +1,4 @@
-// Media: from descriptions to records, when a shape, a light or the camera first asks for one.
+// Media: from descriptions to records, built when a shape, a light or the camera first needs one.
 #include "core/scene/builder.h"
 
 #include <fmt/format.h>
@@ -10,7 +10,7 @@ namespace lampyris {
 
 namespace {
 
-// Media of pbrt-v4 that Lampyris does not simulate; empty space takes their place where that is skipped.
+// Media of pbrt-v4 that Lampyris does not simulate; empty space replaces them with --skip-unsupported.
 constexpr const char* kUnsupported[] = {"uniformgrid", "rgbgrid", "cloud", "nanovdb"};
 constexpr const char* kInPlace = "empty space takes its place if skipped";
 
@@ -19,7 +19,7 @@ bool is_unsupported(const MediumDescription& medium) {
 }
 
 void report_unknown(BuildContext& context, const MediumDescription& medium) {
-    if (medium.type.empty()) return;  // the parser has told
+    if (medium.type.empty()) return;  // the parser has reported it
     const auto [message, hint] = medium_registry().unknown(medium.type);
     context.diagnostics.error(medium.type_location, message, hint);
 }

@@ -25,7 +25,8 @@ uint32_t ShapeContext::add_geometry(uint32_t kind, uint32_t flags, uint32_t prim
     record.primitive_count = primitive_count;
     record.media = build.medium(shape.interior_medium) << 16 | build.medium(shape.exterior_medium);
     FloatSlot alpha = read_float(build, reader, "alpha");
-    // A texture that is the same everywhere is that number: a light asks for it (LIGHT_PASSED), as pbrt-v4's do.
+    // A constant texture is treated as a plain number, because add_area_light decides LIGHT_PASSED by it, as pbrt-v4's lights
+    // do.
     if (alpha.texture != kNone) {
         const kernel::TextureOp& op = build.scene.texture_ops[alpha.texture];
         if (op.operation == kernel::TEXTURE_CONSTANT && (op.flags & 1u) != 0u)
@@ -80,9 +81,9 @@ Box set_bounds(const Scene& scene, const GeometrySet& set) {
     return box;
 }
 
-// Of rays within instances: Embree leaves out what lies farther out than 1.8e18.
+// Limit for rays in an instance's space: Embree ignores whatever lies farther out than 1.8e18.
 constexpr float kLargestRay = 0.5e18f;
-// A scene whose bounding sphere is as small as that is a point, and is not hit.
+// A scene whose bounding sphere is this small is a single point, which no ray hits.
 constexpr float kNoRadius = 1e-30f;
 
 void refuse_distance(Diagnostics& diagnostics, Location where, const char* what) {
@@ -166,7 +167,7 @@ class ShapeBuilder {
     }
 
     BuildContext& context_;
-    std::vector<std::optional<AreaLight>> area_lights_;  // read when a shape first asks
+    std::vector<std::optional<AreaLight>> area_lights_;  // read when a shape first needs one
 };
 
 }  // namespace

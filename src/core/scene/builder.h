@@ -22,7 +22,7 @@ namespace lampyris {
 
 struct BuildContext;
 
-// A directive that asks for effects. Its place is looked up where somebody wants to read it, not before.
+// A directive that needs effects. Its location is computed only when somebody reads it.
 struct Asker {
     const BuildContext* build = nullptr;
     const Entity* entity = nullptr;
@@ -35,14 +35,14 @@ struct AreaLight {
     bool valid = false;
     bool two_sided = false;
     Spectrum radiance{0.0f};
-    uint32_t texture = kNone;         // emission program, in place of `radiance`
-    glm::vec3 texture_average{0.0f};  // radiance on average, for choosing lights
-    float power = 0.0f;               // wanted, in the units of the scene; 0: none
+    uint32_t texture = kNone;         // emission program; replaces `radiance`
+    glm::vec3 texture_average{0.0f};  // mean radiance, for choosing lights
+    float power = 0.0f;               // the requested power, in the units of the scene; 0: none
     float power_luminance = 1.0f;     // luminance per unit of scale, as "power" counts it
     Asker asked_by;
 };
 
-// The whole of one build. Plugins append to `scene` and tell `diagnostics`.
+// The state of one build. Plugins append to `scene` and report to `diagnostics`.
 struct BuildContext {
     SceneDescription& description;
     const BuildOptions& options;
@@ -51,7 +51,7 @@ struct BuildContext {
     Diagnostics& diagnostics;
     TextureBuilder& textures;
 
-    // Lights in two groups, since the infinite ones come first in Scene::lights; the weights are powers.
+    // Lights are kept in two groups, because the infinite ones come first in Scene::lights. Powers serve as weights.
     struct PendingLight {
         kernel::LightRecord record;
         double power = 0.0;  // luminous; of infinite and distant lights: per unit of the scene's radius squared
@@ -60,14 +60,14 @@ struct BuildContext {
     };
     std::vector<PendingLight> infinite_lights, lights;
 
-    // The record of SceneDescription::materials[i] (kNone: pbrt-v4's default, diffuse 0.5), built when first asked for.
-    // `path` holds the materials that are being built, outermost first: a mix must not contain itself.
+    // The record of SceneDescription::materials[i] (kNone: pbrt-v4's default, diffuse 0.5), built on first use. `path` holds
+    // the materials that are being built, outermost first: a mix must not contain itself.
     uint32_t material(uint32_t description_index, const std::vector<uint32_t>& path = {});
     std::unordered_map<uint32_t, uint32_t> built_materials;
     // The index of a named material in the description, or kNone.
     uint32_t named_material(const std::string& name);
-    std::unordered_map<std::string_view, uint32_t> named_materials;  // filled when first asked
-    std::unordered_map<uint32_t, uint32_t> mix_depths;  // of mixes in Scene::materials: how deeply they nest
+    std::unordered_map<std::string_view, uint32_t> named_materials;  // filled on first use
+    std::unordered_map<uint32_t, uint32_t> mix_depths;  // nesting depth of mixes, by index in Scene::materials
     // Materials that nothing uses are not built; unknown types and parameters are still reported.
     void check_unused_materials();
 
@@ -78,29 +78,29 @@ struct BuildContext {
     }
     // A file name in the scene, relative to the scene file's folder.
     std::string resolve(const std::string& filename) const;
-    // Appends a transform and returns its index. Errors for a singular one are reported at `where`.
+    // Appends a transform and returns its index. Reports an error at `where` if it is singular.
     uint32_t add_transform(const glm::mat4& to, Location where);
-    // Whether media are simulated, which the Integrator directive says. Call it first.
+    // Reads from the Integrator directive whether media are simulated. Must be called first.
     void choose_media();
-    // The record of SceneDescription::media[i] (kNone: empty space), built when first asked for.
+    // The record of SceneDescription::media[i] (kNone: empty space), built on first use.
     uint32_t medium(uint32_t description_index);
     std::unordered_map<uint32_t, uint32_t> built_media;
-    // As with materials.
+    // The same as check_unused_materials, for media.
     void check_unused_media();
     // Diagnostics::unsupported if the transform moves.
     void refuse_motion(const AnimatedTransform& transform, Location where);
 };
 
 kernel::TransformRecord transform_record(const glm::mat4& to);
-// Whether a transform can be inverted, and the inverse be held in floats.
+// Whether a transform has an inverse whose elements are finite floats.
 bool invertible(const glm::mat4& to);
-// Where images are right (tests/numerics/scale_test.cpp): tracers, Embree among them, form products of three lengths, which must
-// fit into a float.
+// The range in which images are correct (tests/numerics/scale_test.cpp): tracers, Embree among them, form products of three
+// lengths, which must not overflow a float.
 constexpr float kLargestCoordinate = 1e12f;
 constexpr float kSmallestScene = 1e-9f;  // radius of the bounding sphere
 bool swaps_handedness(const glm::mat4& m);
 
-// ---- Values that a texture may stand in for --------------------------------------------------------------------------
+// ---- Values that a texture may replace -------------------------------------------------------------------------------
 
 struct ColorSlot {
     Spectrum value{0.0f};
@@ -131,7 +131,7 @@ struct ShapeContext {
     bool in_object = false;
     Asker asked_by;
 
-    // Appends a geometry record with material, alpha, orientation and media filled in; the caller adds what its kind
+    // Appends a geometry record with material, alpha, orientation and media filled in. The caller adds the fields that its kind
     // needs (layout.h), and its lights (area_lights.h).
     uint32_t add_geometry(uint32_t kind, uint32_t flags, uint32_t primitive_count);
 };
@@ -144,14 +144,15 @@ struct MaterialContext {
     ParameterReader& reader;
     kernel::MaterialRecord& record;
     Asker asked_by;
-    std::vector<uint32_t> path;  // see BuildContext::material; ends with this one
+    std::vector<uint32_t> path;  // see BuildContext::material; ends with the current one
     void ask(uint64_t effect) { build.ask(effect, asked_by); }
 };
 using MaterialFactory = void (*)(MaterialContext&);
-// MaterialRecord::floats2.w, the roughness of a material's roughest lobe: photons are kept on it if an eye path may gather there,
-// which is where this is no less than the integrator's `glossy`. A material that does not say counts as diffuse.
+// MaterialRecord::floats2.w: the roughness of a material's roughest lobe. Photons are stored on a surface if an eye path may
+// gather there, that is, if this roughness is no less than the integrator's `glossy`. A material that sets nothing counts as
+// diffuse.
 constexpr float kRoughestDiffuse = 1e30f;
-constexpr float kNeverGathers = 0.0f;  // delta lobes alone
+constexpr float kNeverGathers = 0.0f;  // only delta lobes
 Registry<MaterialFactory>& material_registry();
 
 struct MediumContext {

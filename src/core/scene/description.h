@@ -1,4 +1,4 @@
-// What a scene file says, directive by directive, before anything is interpreted: the first stage of the way
+// The content of a scene file, directive by directive, before anything is interpreted. It is the first stage of
 // scene.pbrt -> SceneDescription -> Scene + Effects -> Device -> Integrator -> Film.
 //
 // The parser resolves the graphics state (transforms, attributes, named things) and snapshots it into each entity;
@@ -42,20 +42,20 @@ struct Parameter {
     std::string name;
     Location location;                      // of the "type name" string
     Location value_location;                // of the first value
-    std::string_view color_space = "srgb";  // that rgb values are given in: one of kColorSpaces
+    std::string_view color_space = "srgb";  // the colour space of rgb values: one of kColorSpaces
     std::variant<std::vector<float>, std::vector<int32_t>, std::vector<uint8_t>, std::vector<std::string>> values;
-    mutable bool used = false;  // set by the getters; what is left unused is an error
+    mutable bool used = false;  // set by the getters; a parameter that no getter read is an error
 };
 
 const char* type_name(ParameterType type);  // "point3", ...
 inline constexpr std::array<std::string_view, 4> kColorSpaces{"srgb", "rec2020", "aces2065-1", "dci-p3"};
 
-// The parameters of one directive. Getters mark a parameter as used, and report a wrong type or count to Diagnostics
-// (returning the default). Getting by a name that is there with another type is an error that names both types.
+// The parameters of one directive. Getters mark a parameter as used, and report a wrong type or count to Diagnostics (returning
+// the default). If the parameter exists with another type, the error names both types.
 class ParameterList {
  public:
     std::vector<Parameter> parameters;
-    std::vector<std::string> malformed;  // names of those that could not be read, which was reported
+    std::vector<std::string> malformed;  // names of parameters that could not be read, which was reported
 
     const Parameter* find(std::string_view name) const;  // marks as used
     const Parameter* find(std::string_view name, ParameterType type) const;
@@ -74,10 +74,11 @@ class ParameterList {
     // The whole array of a parameter (P, N, uv, indices); empty when absent. Moves the storage out: large meshes are not copied.
     std::vector<float> take_floats(std::string_view name, ParameterType type, Diagnostics& diagnostics);
     std::vector<int32_t> take_ints(std::string_view name, Diagnostics& diagnostics);
-    // Adds those that are missing here (Attribute's defaults). They count as used: one may apply to some types only.
+    // Adds the parameters that are missing here (Attribute's defaults). They count as used: a default may apply to some types
+    // only.
     void add_defaults(const std::vector<Parameter>& defaults);
     bool all_used() const;
-    // Every parameter that no getter asked for becomes an error, with the known names as hint.
+    // Every parameter that no getter read becomes an error, with the known names as a hint.
     void report_unused(const std::string& of_what, const std::vector<std::string>& known,
                        Diagnostics& diagnostics) const;
 };
@@ -146,7 +147,7 @@ struct InstanceDescription {
 
 struct SceneDescription {
     std::shared_ptr<Sources> sources;
-    std::string directory;  // of the scene file: what relative file names in it are relative to
+    std::string directory;  // folder of the scene file: relative file names start here
     CameraDescription camera;
     Entity sampler, film, pixel_filter, integrator, accelerator;  // not given(): pbrt's defaults
     ParameterList options;  // of Option directives; names in lower case without "_" and "-", as pbrt compares them
@@ -163,9 +164,10 @@ struct SceneDescription {
     std::vector<InstanceDescription> instances;
 };
 
-// Reads a scene file and what it includes. Errors are collected in `diagnostics`; parsing goes on after an error where it
-// can. Throws InputError only where the file cannot be read at all.
-// `sources` keeps the texts for as long as locations are to be shown, and must be what `diagnostics` was made with.
+// Reads a scene file and its includes. Errors are collected in `diagnostics`; parsing continues after an error where possible.
+// Throws InputError only if the file cannot be read at all.
+// `sources` owns the texts, so it must live as long as locations are shown. It must be the one that `diagnostics` was made
+// with.
 SceneDescription parse_scene_file(const std::string& path, std::shared_ptr<Sources> sources, Diagnostics& diagnostics);
 // The same for a text in memory (tests, fuzzing, standard input); `directory` is where its Includes are looked for.
 SceneDescription parse_scene_text(std::string name, std::string text, const std::string& directory,

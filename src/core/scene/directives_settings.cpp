@@ -113,7 +113,7 @@ void Parser::option(const Token& directive) {
                             "option \"" + shown(name) + "\" takes " + kExpected[static_cast<int>(info->type)]);
         return;
     }
-    // The last one counts, as in pbrt.
+    // The last directive wins, as in pbrt.
     std::erase_if(scene_.options.parameters, [&](const Parameter& other) { return other.name == parameter.name; });
     scene_.options.parameters.push_back(std::move(parameter));
 }
@@ -177,7 +177,7 @@ void Parser::include(const Token& directive) {
     if (read_string(directive, "a file name", name, &location)) open_file(directive, name, location, path);
 }
 
-// Like Include, but what the file changes in the graphics state ends with it, and so do its blocks.
+// Like Include, but the file's changes to the graphics state, and the blocks it opens, end with the file.
 void Parser::import(const Token& directive) {
     std::string name, path;
     Location location;

@@ -113,7 +113,7 @@ void Parser::attribute(const Token& directive) {
     for (const auto& [name, defaults] : targets) {
         names.emplace_back(name);
         if (target != name) continue;
-        // The new ones go first: they win over what an outer block said.
+        // The new ones go first: they override those of an outer block.
         if (*defaults) list.add_defaults(**defaults);
         for (Parameter& parameter : list.parameters) parameter.used = true;
         *defaults = std::make_shared<const std::vector<Parameter>>(std::move(list.parameters));

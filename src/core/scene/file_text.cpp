@@ -24,7 +24,7 @@ bool inflate_gzip(std::string_view bytes, std::string& result, std::string& why)
     }
     std::unique_ptr<z_stream, int (*)(z_stream*)> guard(&stream, inflateEnd);
     result.clear();
-    // Grows with what the data really holds, so that a small file cannot ask for much memory by saying so.
+    // Grows with the actual data, so that the size which a small file claims cannot make it allocate much memory.
     size_t produced = 0;
     size_t consumed = 0;
     while (true) {
@@ -47,7 +47,7 @@ bool inflate_gzip(std::string_view bytes, std::string& result, std::string& why)
         } else if (status != Z_OK && status != Z_BUF_ERROR) {
             why = "the gzip'd data is damaged at byte " + std::to_string(consumed);
             return false;
-        } else if (!progress) {  // there was room for output, so the input is what ran out
+        } else if (!progress) {  // there was room for output, so the input ended too early
             why = "the gzip'd data ends too early";
             return false;
         }
@@ -72,14 +72,14 @@ std::shared_ptr<const FileText> FileText::open(const std::string& path, std::str
         why = std::strerror(errno);
         return nullptr;
     }
-    // A device or a pipe may never end.
+    // Reading a device or a pipe may never end.
     if (!S_ISREG(status.st_mode)) {
         why = S_ISDIR(status.st_mode) ? "it is a directory" : "it is not a regular file";
         return nullptr;
     }
     std::shared_ptr<FileText> file(new FileText);
     if (status.st_size == 0) return file;
-    // A process may map 65530 pieces (vm.max_map_count), and a scene may be made of more files than that.
+    // A process may have 65530 mappings (vm.max_map_count), and a scene may consist of more files than that.
     constexpr off_t kSmall = 65536;
     if (status.st_size <= kSmall) {
         file->read_.resize(static_cast<size_t>(status.st_size));
@@ -91,7 +91,7 @@ std::shared_ptr<const FileText> FileText::open(const std::string& path, std::str
                 why = std::strerror(errno);
                 return nullptr;
             }
-            if (got == 0) break;  // it has become shorter
+            if (got == 0) break;  // the file has been truncated meanwhile
             have += static_cast<size_t>(got);
         }
         file->read_.resize(have);

@@ -17,8 +17,8 @@ namespace {
 
 using Rectangle = std::array<int, 4>;  // x0 y0 x1 y1, half-open
 
-// The four numbers x0 x1 y0 y1 of a parameter, each pair in order; nothing, and an error or a warning, where they are none.
-// pbrt-v4 goes on where their number is wrong, with what holds without them.
+// The four numbers x0 x1 y0 y1 of a parameter, each pair sorted. Empty if the parameter is absent or wrong: a wrong type is an
+// error; a wrong count is a warning, since pbrt-v4 then ignores the parameter.
 template <typename T>
 std::optional<std::array<T, 4>> read_bounds(ParameterReader& reader, const char* name, const char* hint) {
     const Parameter* parameter = reader.find(name);
@@ -40,8 +40,8 @@ std::optional<std::array<T, 4>> read_bounds(ParameterReader& reader, const char*
     return bounds;
 }
 
-// As in pbrt-v4 (film.cpp, FilmBaseParameters): what lies outside of the picture is cut off, and of the two parameters the
-// crop window counts.
+// As in pbrt-v4 (film.cpp, FilmBaseParameters): the bounds are clipped to the picture, and the crop window wins if both
+// parameters are given.
 void read_rectangle(FilmContext& film, std::array<int, 2> size, Rectangle& crop) {
     ParameterReader& reader = film.reader;
     const auto bounds = read_bounds<int32_t>(reader, "pixelbounds", "x0 x1 y0 y1");
@@ -97,11 +97,11 @@ void build_film(FilmContext& film) {
     build.settings.crop = crop;
     build.settings.output = reader.get_string("filename");
     build.settings.save_half = reader.get_bool("savefp16");
-    reader.get_float("diagonal");  // of realistic cameras
+    reader.get_float("diagonal");  // used by realistic cameras only
 
-    // pbrt-v4: a sensor's numbers are the light times exposure time times ISO / 100; clamped per sample, after that.
+    // pbrt-v4: a sensor's values are light times exposure time times ISO / 100, then clamped per sample.
     Entity& camera = build.description.camera;
-    Diagnostics quiet(*build.description.sources);  // the camera's own factory tells what is wrong with these
+    Diagnostics quiet(*build.description.sources);  // the camera's own factory reports errors in these
     const float open = camera.parameters.get_float("shutteropen", 0.0f, quiet),
                 close = camera.parameters.get_float("shutterclose", 1.0f, quiet);
     const float exposure = reader.has("exposuretime") ? reader.get_float("exposuretime") : std::abs(close - open);

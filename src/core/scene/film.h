@@ -1,4 +1,4 @@
-// Film, PixelFilter, Sampler, Option: how the picture is taken, rather than of what.
+// Film, PixelFilter, Sampler and Option directives: settings of the picture rather than of the world.
 #pragma once
 
 #include "core/scene/builder.h"
@@ -26,7 +26,7 @@ struct RegisterSampler {
     RegisterSampler(const char* name, const char* summary, ParameterSpecs specs, SamplerFactory factory);
 };
 
-// Camera, film, filter and sampler of the scene; records and settings are filled in.
+// Builds camera, film, filter and sampler of the scene; fills in records and settings.
 void build_view(BuildContext& context);
 
 }  // namespace lampyris

@@ -17,7 +17,7 @@ void append_axis(const std::function<double(double)>& filter, double radius, std
     constexpr uint32_t n = kFilterTableSize;
     std::vector<double> node(n + 1);
     for (uint32_t i = 0; i <= n; ++i) node[i] = filter(radius * i / n);
-    // A change of sign is put at the nearer node, so that each interval has one sign.
+    // At a change of sign, the nearer node becomes zero, so that the filter has one sign within each interval.
     for (uint32_t i = 0; i < n; ++i) {
         if (node[i] * node[i + 1] < 0) (std::abs(node[i]) < std::abs(node[i + 1]) ? node[i] : node[i + 1]) = 0;
     }
@@ -38,7 +38,8 @@ void append_axis(const std::function<double(double)>& filter, double radius, std
     }
     for (const double value : cdf) add(value);
     add(absolute / integral);
-    // Where to look for a number between i/n and (i+1)/n: at or before its interval, however i = floor(u n) was rounded.
+    // The guide: where to start searching for a number between i/n and (i+1)/n. It is at or before the right interval, however
+    // i = floor(u n) was rounded.
     for (uint32_t i = 0, cell = 0; i < n; ++i) {
         while (cell + 1 < n && cdf[cell + 1] <= double(i) / n - 1e-6) ++cell;
         add(cell);

@@ -10,7 +10,7 @@ namespace lampyris {
 // Intervals of a table between the pixel's centre and the filter's radius: linear interpolation is then within 0.1 % of
 // the filter's peak, also for the lobes of a sinc of radius 4.
 inline constexpr uint32_t kFilterTableSize = 128;
-// Floats (their bits) of one axis: nodes, CDF, what the absolute value integrates to over the filter's integral, guide.
+// Number of 32-bit words per axis: nodes, CDF, the ratio of the integrals of |filter| and filter, guide.
 inline constexpr uint32_t kFilterTableFloats = 3 * kFilterTableSize + 3;
 
 // The filters of pbrt-v4 (4th edition, section 8.8), by the distance x from the centre in pixels; not normalised.

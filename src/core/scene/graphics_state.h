@@ -1,4 +1,4 @@
-// What directives change and entities take a snapshot of: pbrt's graphics state.
+// pbrt's graphics state: directives change it, and entities take a snapshot of it.
 #pragma once
 
 #include "core/scene/description.h"
@@ -9,15 +9,15 @@
 
 namespace lampyris {
 
-// Names that may be used before they are defined: each gets a number at its first mention, and its definition later.
+// Names that may be used before they are defined. Each gets an index at its first mention, and its definition later.
 class NameTable {
  public:
     struct Entry {
         std::string name;
-        Location first_use;  // unknown() while only defined
+        Location first_use;  // unknown() while the name is defined but not used
         Location definition;
-        uint32_t index = kNone;         // of what it names, once defined
-        mutable bool reported = false;  // as undefined
+        uint32_t index = kNone;         // index of the named thing, once defined
+        mutable bool reported = false;  // true: already reported as undefined
     };
     uint32_t use(const std::string& name, Location location) {
         const uint32_t id = intern(name);
@@ -54,7 +54,7 @@ class NameTable {
 using Defaults = std::shared_ptr<const std::vector<Parameter>>;
 
 struct GraphicsState {
-    // In double precision, so that long chains of transforms and the camera's inverse lose nothing that a float shows.
+    // In double precision, so that long chains of transforms and the camera's inverse lose no accuracy that a float would show.
     std::array<glm::dmat4, 2> ctm{glm::dmat4(1.0), glm::dmat4(1.0)};  // at the start and the end of the shutter
     static constexpr uint32_t kBothTimes = 3;
     uint32_t active_times = kBothTimes;  // bit i: transforms change ctm[i]

@@ -53,7 +53,7 @@ size_t words_of(uint32_t format, size_t pixels) {
     }
 }
 
-// Light of a number in [0, 1] as the file encodes it.
+// Linear light for a number in [0, 1] of the file's encoding.
 float decode(double number, TexelEncoding encoding) {
     switch (encoding.kind) {
         case TexelEncoding::Kind::kSrgb: return linear_from_srgb(float(number));

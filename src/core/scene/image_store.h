@@ -1,8 +1,8 @@
 // Images as kernels see them: packed texels in Scene::texels, records in Scene::images.
 //
-// Eight-bit files stay at 8 bits a channel (a table of 256 floats per encoding says what a byte means); 16-bit and half-float
-// colour becomes half floats, everything else 32-bit floats; grey images keep one channel. The same file with the same encoding
-// is loaded once, whatever wraps and filters it.
+// Eight-bit files stay at 8 bits a channel (one table of 256 floats per encoding decodes a byte). 16-bit and half-float colour
+// becomes half floats; everything else becomes 32-bit floats. Grey images keep one channel. A file is loaded once per encoding,
+// whatever its wrap mode and filter.
 #pragma once
 
 #include "core/error.h"
@@ -26,7 +26,7 @@ namespace lampyris {
 struct TexelEncoding {
     enum class Kind { kOfFile, kLinear, kSrgb, kGamma } kind = Kind::kOfFile;
     float gamma = 1.0f;  // light = number^gamma, for kGamma
-    bool emits = false;  // an image of light: numbers below 0 are taken for 0
+    bool emits = false;  // an image of emitted light: negative numbers are set to 0
     auto operator<=>(const TexelEncoding&) const = default;
 };
 
@@ -39,17 +39,17 @@ class ImageStore {
  public:
     ImageStore(Scene& scene, Diagnostics& diagnostics) : scene_(scene), diagnostics_(diagnostics) {}
 
-    // The index in Scene::images of a file. Throws InputError that says why it cannot be read. Numbers that are not finite
-    // are replaced, and negative ones of what emits, with a warning at `where`.
+    // The index in Scene::images of a file. Throws an InputError that says why it cannot be read. Numbers that are not finite
+    // are replaced, and so are negative ones in images of emitted light, with a warning at `where`.
     uint32_t load(const std::string& path, TexelEncoding encoding, ImageLookup lookup, Location where);
     // The same for an image in memory; `encoding` applies to its storage as it does to a file's, `name` is for messages.
     uint32_t add(const Image& image, TexelEncoding encoding, ImageLookup lookup, const std::string& name,
                  Location where);
 
-    // Where noise textures find their permutation of 0..255 in Scene::texels.
+    // The offset in Scene::texels of the noise textures' permutation of 0..255.
     uint32_t noise_permutation();
 
-    // What kernels decode, row by row from the top, and its average.
+    // The texels as kernels decode them, row by row from the top, and their average.
     std::vector<glm::vec3> pixels(uint32_t image) const;
     glm::vec3 average(uint32_t image) const;
 

@@ -26,7 +26,8 @@ double fill_cdf(size_t count, const Weight& weight, uint32_t* out) {
         fill_cdf(count, alike, out);
         return 0;
     }
-    // Rounding cannot take a number away: `below` grows through the very sums that made `sum`, and ends at it.
+    // Rounding cannot lose any of these integers: `below` accumulates the same partial sums as `sum` did, and ends exactly at
+    // it.
     const double by_weight = kTotal - double(positive);
     double below = 0;
     uint32_t found = 0;

@@ -18,7 +18,7 @@ LoadedScene read_scene(SceneSource source, const BuildOptions& options, std::sha
                                                : parse_scene_file(source.name, loaded.sources, diagnostics);
     loaded.parse_s = seconds(start);
     const auto parsed = Clock::now();
-    // Building goes on after errors of the parser: all that is wrong with a scene is told at once.
+    // Building continues after parser errors, so that all errors of a scene are reported at once.
     static_cast<BuiltScene&>(loaded) = build_scene(std::move(description), options, diagnostics);
     loaded.scene.name = std::move(source.name);
     loaded.build_s = seconds(parsed);

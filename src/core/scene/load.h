@@ -13,9 +13,9 @@ namespace lampyris {
 
 // Where a scene comes from.
 struct SceneSource {
-    std::string name;                 // the file's path; or what messages call the text
+    std::string name;                 // the file's path, or the name of the text in messages
     std::optional<std::string> text;  // a scene in memory
-    std::string directory = ".";      // of a text: where the files that it names are looked for
+    std::string directory = ".";      // for a text: the folder of the files that it names
 
     static SceneSource of_file(std::string path) { return {std::move(path), {}, {}}; }
     static SceneSource of_text(std::string text, std::string name = "scene", std::string directory = ".") {
@@ -24,18 +24,18 @@ struct SceneSource {
 };
 
 struct LoadedScene : BuiltScene {
-    std::shared_ptr<Sources> sources;   // of locations that settings still hold (the integrator's parameters)
+    std::shared_ptr<Sources> sources;   // the texts of locations in the settings (the integrator's parameters)
     std::vector<std::string> warnings;  // formatted, with location
     double parse_s = 0.0, build_s = 0.0;
 };
 
-// For a caller that has more to check before errors are thrown: they are in the diagnostics, which look places up in `sources`,
-// and so are the warnings.
+// For a caller that has more checks to make before errors are thrown. Errors and warnings are left in the diagnostics, which
+// look locations up in `sources`.
 LoadedScene read_scene(SceneSource source, const BuildOptions& options, std::shared_ptr<Sources> sources,
                        Diagnostics& diagnostics);
 
-// Throws InputError with all errors of the scene; with `skip_unsupported`, what is known but not simulated is a warning,
-// and listed in Scene::unsupported.
+// Throws an InputError with all errors of the scene. With `skip_unsupported`, features that are known but not simulated cause
+// warnings, and are listed in Scene::unsupported.
 LoadedScene load_scene(SceneSource source, const BuildOptions& options, bool skip_unsupported);
 
 }  // namespace lampyris

@@ -1,4 +1,4 @@
-// Perlin's permutation (2002, "Improving Noise"), which pbrt's noise uses: what a dot or a vein looks like depends on it.
+// Perlin's permutation (2002, "Improving Noise"). pbrt uses the same one, and it determines the look of every noise pattern.
 #pragma once
 
 #include <cstdint>

@@ -6,7 +6,7 @@
 namespace lampyris {
 namespace {
 
-// Whether a number that no float holds is tiny (then it is zero) rather than huge.
+// Whether a number outside of the range of floats is tiny (and becomes zero) rather than huge.
 bool is_tiny(const char* p, const char* end) {
     if (p != end && *p == '-') ++p;
     int64_t leading = 0;  // decimal exponent of the first digit that is not zero

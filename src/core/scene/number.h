@@ -1,4 +1,4 @@
-// Text to numbers: exact (the nearest float or double to the decimal text), and fast where that is possible in doubles.
+// Text to numbers: exact (the nearest float or double to the decimal text), and fast if double arithmetic suffices.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,8 @@ namespace lampyris {
 
 enum class NumberStatus { kOk, kNotANumber, kOutOfRange };
 
-// Where the number's text ends, and whether it is one. A number ends at a blank, a bracket, a quote, '#' or the end of the
-// text; anything else makes the whole word no number.
+// Where the number's text ends, and whether it is a number. A number ends at a blank, a bracket, a quote, '#' or the end of the
+// text. Any other character makes the whole word not a number.
 struct NumberResult {
     const char* end;
     NumberStatus status;
@@ -58,7 +58,7 @@ inline NumberResult scan_decimal(const char* p, const char* end, Decimal& decima
     return {p, NumberStatus::kNotANumber};
 }
 
-// The exact ways for what the fast ways cannot do (number.cpp); begin..end is a number.
+// The exact conversions, for numbers that the fast paths cannot convert (number.cpp); begin..end is a number.
 NumberStatus exact_float(const char* begin, const char* end, float& value);
 NumberStatus exact_double(const char* begin, const char* end, double& value);
 
@@ -91,8 +91,8 @@ inline NumberResult parse_float(const char* begin, const char* end, float& value
     if (result.status != NumberStatus::kOk) return result;
     double wide;
     if (fast_double(decimal, wide)) {
-        // Rounding twice (to double, then to float) goes wrong only next to the midpoint of two floats: the 29 bits that
-        // float lacks are then within one of 1000...0. Denormal and too large floats go the exact way, too.
+        // Rounding twice (to double, then to float) goes wrong only next to the midpoint of two floats: the 29 bits that float
+        // lacks are then within one of 1000...0. Denormals and numbers too large for a float take the exact path, too.
         uint64_t bits;
         std::memcpy(&bits, &wide, sizeof bits);
         const uint64_t exponent = (bits >> 52) & 0x7ffu;

@@ -1,4 +1,4 @@
-// ParameterList: how stages after the parser ask for parameters.
+// ParameterList: how the stages after the parser read parameters.
 #include "core/scene/description.h"
 
 #include <algorithm>
@@ -54,7 +54,7 @@ template <typename T>
 std::vector<T> take(ParameterList& list, std::string_view name, ParameterType type, Diagnostics& diagnostics) {
     const Parameter* parameter = find_typed(list, name, type, diagnostics);
     if (!parameter) return {};
-    // The list is not const here, and so neither is what was found in it.
+    // The list is not const here, so the parameter in it is not const either.
     auto* values = std::get_if<std::vector<T>>(&const_cast<Parameter*>(parameter)->values);
     return values ? std::move(*values) : std::vector<T>();
 }

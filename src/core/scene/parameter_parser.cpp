@@ -12,7 +12,7 @@ namespace {
 struct TypeInfo {
     const char* name;
     ParameterType type;
-    size_t tuple;  // numbers come in multiples of this
+    size_t tuple;  // numbers are allocated in multiples of this
 };
 
 constexpr TypeInfo kTypes[] = {
@@ -25,7 +25,7 @@ constexpr TypeInfo kTypes[] = {
     {"texture", ParameterType::kTexture, 1},
 };
 
-// Names that older files or other formats use: read as what they mean, with a warning, or only suggested.
+// Names from older versions or other formats: either accepted with a warning, or only suggested.
 struct Alias {
     std::string_view alias;
     const char* name;
@@ -62,7 +62,7 @@ std::vector<std::string_view> split(std::string_view text) {
     }
 }
 
-// "type name", as opposed to a string value: how an array that was never closed is noticed.
+// "type name", as opposed to a string value: it shows that an array was never closed.
 bool looks_like_declaration(const Token& token) {
     if (token.kind != TokenKind::kString || token.text.size() > 100) return false;
     const auto words = split(token.text);
@@ -108,7 +108,7 @@ void ParameterParser::parse(Tokenizer& tokenizer, std::string_view color_space, 
             list.malformed.push_back(parameter.name);
             continue;
         }
-        constexpr size_t kFew = 16;  // up to here a linear search is cheaper than a set
+        constexpr size_t kFew = 16;  // below this, a linear search is cheaper than a set
         bool duplicate = false;
         if (parameters.size() < kFew) {
             for (const Parameter& other : parameters) duplicate = duplicate || other.name == parameter.name;
@@ -206,7 +206,7 @@ bool ParameterParser::parse_values(Tokenizer& tokenizer, Parameter& parameter) {
     bool numeric = parameter.type != ParameterType::kString && parameter.type != ParameterType::kTexture &&
                    parameter.type != ParameterType::kBool;
     if (parameter.type == ParameterType::kSpectrum) {
-        // Numbers or names: the first value decides.
+        // Numbers or names: the first value decides which.
         numeric = first != tokenizer.end() && *first != '"';
     }
     bool good;
@@ -265,7 +265,7 @@ bool ParameterParser::parse_numbers(Tokenizer& tokenizer, const Parameter& param
                 continue;
             }
         }
-        // Not a number.
+        // Not a number: report it.
         tokenizer.set_cursor(p);
         if (bracketed && ends_unclosed(tokenizer, parameter, open)) return false;
         const Token token = tokenizer.peek();
@@ -316,7 +316,7 @@ bool ParameterParser::parse_words(Tokenizer& tokenizer, Parameter& parameter) {
 
 bool ParameterParser::parse_word(Tokenizer& tokenizer, const Token& token, Parameter& parameter) {
     if (auto* bools = std::get_if<std::vector<uint8_t>>(&parameter.values)) {
-        // Quoted was pbrt-v3's form, which pbrt-v4's files still have here and there.
+        // The quoted form is pbrt-v3's; some of pbrt-v4's files still have it.
         if ((token.kind != TokenKind::kWord && token.kind != TokenKind::kString) ||
             (token.text != "true" && token.text != "false")) {
             wrong_value(parameter, token, "true or false");
@@ -358,7 +358,7 @@ bool ParameterParser::check_count(const Parameter& parameter) {
     return true;
 }
 
-// Past the values of a parameter that was not understood.
+// Skips the values of a parameter that was not understood.
 void ParameterParser::skip_values(Tokenizer& tokenizer) {
     if (tokenizer.peek().kind == TokenKind::kOpen) {
         while (tokenizer.peek().kind != TokenKind::kEnd) {

@@ -11,7 +11,7 @@ class ParameterParser {
  public:
     ParameterParser(Diagnostics& diagnostics, OldFormat& old_format)
         : diagnostics_(&diagnostics), old_format_(&old_format) {}
-    // Adds parameters up to the first token that starts none. What is wrong is reported, and reading goes on behind it.
+    // Adds parameters up to the first token that starts none. Errors are reported, and parsing continues after them.
     void parse(Tokenizer& tokenizer, std::string_view color_space, ParameterList& list);
 
  private:
@@ -29,12 +29,13 @@ class ParameterParser {
 
     Diagnostics* diagnostics_;
     OldFormat* old_format_;
-    // Arrays are read into these and copied when small, so that small ones have no slack and large ones no second copy.
+    // Arrays are read into these buffers and copied if small, so that small arrays have no unused capacity and large ones are
+    // not copied.
     std::vector<float> floats_;
     std::vector<int32_t> ints_;
 };
 
-// A word that starts a directive ("Shape"): where reading goes on after an error. Defined with the directives' table.
+// A word that starts a directive ("Shape"); parsing continues there after an error. Defined with the directives' table.
 bool is_directive(std::string_view word);
 
 }  // namespace lampyris

@@ -102,7 +102,7 @@ void Parser::run(const Token& token) {
     if (directive->phase == Phase::kInWorld && !in_world_) {
         diagnostics_->error(token.location, std::string(directive->name) + " cannot come before WorldBegin",
                             "WorldBegin separates camera, film and the like from the world");
-        // One error is enough: from here on as if it were there.
+        // One error is enough: from here on the parser acts as if the directive were there.
         in_world_ = true;
     }
     (this->*directive->parse)(token);
@@ -171,7 +171,7 @@ bool Parser::read_entity(const Token& directive, Entity& entity, const Defaults&
 }
 
 bool Parser::open_file(const Token& directive, const std::string& name, Location location, std::string& path) {
-    constexpr size_t kMaxFiles = 1000000;  // two files that include a third twice each, and so on, would never end
+    constexpr size_t kMaxFiles = 1000000;  // chains of files that include the next one twice grow exponentially
     constexpr size_t kMaxDepth = 100;
     std::string why;
     if (name.empty()) {

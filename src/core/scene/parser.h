@@ -76,7 +76,7 @@ class Parser {
     void area_light_source(const Token& directive);
     void shape(const Token& directive);
 
-    // Pieces of directives; where they return false, the error is reported and the directive's rest is to be skipped.
+    // Parts of directives. If they return false, the error is reported, and the caller skips the rest of the directive.
     void run(const Token& directive);
     void unexpected(const Token& token);
     Location end_;                               // of the scene file
@@ -98,14 +98,15 @@ class Parser {
         Block kind;
         Location location;
         GraphicsState saved;
-        std::array<size_t, 3> last_of_kind;  // of each kind the innermost, this one included: its index + 1; 0: none
+        std::array<size_t, 3>
+            last_of_kind;  // index + 1 of the innermost block of each kind, this one included; 0: none
     };
     static std::string name_of(Block kind);
     void begin_block(Block kind, const Token& directive);
     bool end_block(Block kind, const Token& directive);
     void report_open_blocks(size_t from);
 
-    // Gives names their indices, once everything is known.
+    // Resolves names to indices, once everything is known.
     void resolve_names();
     uint32_t resolve(const NameTable& table, uint32_t id, const char* what);
 

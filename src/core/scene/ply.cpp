@@ -14,7 +14,7 @@
 namespace lampyris {
 namespace {
 
-// Where the scalar properties of a vertex go: up to three consecutive components of an array.
+// Destination of a vertex's scalar properties: up to three consecutive components of an array.
 struct Attribute {
     std::vector<float>* values;
     size_t components;
@@ -86,7 +86,7 @@ class PlyReader : PlyBody {
             read_packed_vertices(element, attributes);
         else
             read_mixed_vertices(element, attributes);
-        // Of normals and texture coordinates that are not finite the shape makes the best (shapes/mesh.cpp).
+        // Normals and texture coordinates that are not finite are dealt with later (shapes/mesh.cpp).
         const std::vector<float>& values = mesh_.positions;
         const auto bad = std::find_if(values.begin(), values.end(), [](float v) { return !std::isfinite(v); });
         if (bad == values.end()) return;
@@ -95,7 +95,7 @@ class PlyReader : PlyBody {
                         std::to_string(index / 3) + " is not a finite float");
     }
 
-    // Rows of a fixed size: each attribute by itself, in whole floats where they lie side by side.
+    // Rows of a fixed size: each attribute separately; components that are adjacent floats are copied whole.
     void read_packed_vertices(const PlyElement& element, const std::vector<Attribute>& attributes) {
         const size_t stride = stride_of(element);
         std::vector<size_t> offsets(element.properties.size());
@@ -181,7 +181,7 @@ class PlyReader : PlyBody {
             ++mesh_.skipped_faces;
     }
 
-    // One byte of count and that many 32-bit indices: what nearly every binary file has.
+    // One byte of count and that many 32-bit indices: the layout of nearly every binary file.
     void read_usual_faces(const PlyElement& element) {
         if (p_ != end_ && *p_ == 3) mesh_.triangles.reserve(3 * std::min<uint64_t>(element.count, (end_ - p_) / 13));
         if (p_ != end_ && *p_ == 4) mesh_.quads.reserve(4 * std::min<uint64_t>(element.count, (end_ - p_) / 17));
@@ -230,7 +230,7 @@ class PlyReader : PlyBody {
         return static_cast<uint32_t>(index);
     }
 
-    // Faces may come before vertices in the file, so this is done at the end. A negative index counts as a large one here.
+    // Faces may come before vertices in the file, so this is checked at the end. A negative index counts as a large one here.
     void check_indices(const std::vector<uint32_t>& indices, size_t per_face, const char* what) const {
         const size_t vertex_count = mesh_.positions.size() / 3;
         uint32_t largest = 0;

@@ -1,4 +1,4 @@
-// What follows the header of a PLY file, value by value, whatever its format. Internal to ply*.cpp.
+// The data after the header of a PLY file, value by value, in any of its formats. Internal to ply*.cpp.
 #pragma once
 
 #include "core/scene/ply_header.h"
@@ -10,10 +10,10 @@
 
 namespace lampyris {
 
-// Every PLY type fits into a double exactly. `swap`: in the other byte order than the machine's.
+// Every PLY type fits into a double exactly. `swap`: the byte order is not the machine's.
 double load_as_double(const char* p, PlyType type, bool swap);
 
-// Both arguments outlive it. What reads throws InputError where the file is not what its header says.
+// Both arguments must outlive it. The reading functions throw InputError if the file does not match its header.
 class PlyBody {
  public:
     PlyBody(const std::string& name, std::string_view bytes);
@@ -23,12 +23,12 @@ class PlyBody {
     [[noreturn]] void fail(const char* place, const std::string& message) const;
     [[noreturn]] void fail_truncated(const PlyElement& element) const;
 
-    // Against a header that promises more than the file can hold: before anything is allocated for it.
+    // Rejects a header that promises more than the file can hold, before memory is allocated for it.
     void check_size(const PlyElement& element) const;
     // Bytes of a row of the element; 0 where rows differ in size.
     size_t stride_of(const PlyElement& element) const;
 
-    // The next value, of whatever format.
+    // The next value, in any of the formats.
     double read_value(const PlyElement& element, PlyType type);
     int64_t read_integer(const PlyElement& element, PlyType type);
     uint64_t read_count(const PlyElement& element, const PlyProperty& property);

@@ -1,4 +1,4 @@
-// The header of a PLY file, and how its errors are told. Internal to ply*.cpp.
+// The header of a PLY file, and the reporting of its errors. Internal to ply*.cpp.
 #pragma once
 
 #include <cstddef>

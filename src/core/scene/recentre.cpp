@@ -12,7 +12,7 @@ namespace lampyris {
 
 namespace {
 
-// Distance from the origin over size above which a scene is moved: of a float's 24 bits it has lost 6.
+// A scene is moved if its distance from the origin exceeds its size by this factor: a float has then lost 6 of its 24 bits.
 constexpr double kFar = 64.0;
 
 struct Box {
@@ -29,8 +29,8 @@ struct Box {
     }
 };
 
-// In the shape's own space. Of files that are yet to be read the size is taken as 1; should that be wrong, the numbers in the
-// file are as large as the distance, and nothing is gained or lost.
+// The shape's box in its own space. The size of a mesh in a file is not known yet and taken as 1. If that is wrong, the
+// coordinates in the file are as large as the distance, and nothing is gained or lost.
 Box own_box(const ShapeDescription& shape) {
     Box box;
     double reach = 1.0;
@@ -79,7 +79,7 @@ glm::dvec3 origin_of(const SceneDescription& description, const Places& places) 
     const glm::dvec3 centre = box.centre();
     const double size = glm::length(box.half()), distance = glm::length(centre);
     if (!(size > 0.0) || !(distance > kFar * size) || !(distance <= double(kLargestCoordinate))) return glm::dvec3(0.0);
-    // To a multiple of a power of two about the size: what was a round number stays one.
+    // The origin is a multiple of a power of two near the size, so that round numbers stay round.
     const double step = std::exp2(std::ceil(std::log2(size)));
     return glm::round(centre / step) * step;
 }

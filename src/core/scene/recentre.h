@@ -1,4 +1,4 @@
-// Scenes that lie far from the world's origin are moved to it before coordinates become floats.
+// Scenes that lie far from the world's origin are moved to it before coordinates are rounded to floats.
 #pragma once
 
 #include "core/scene/description.h"
@@ -9,16 +9,18 @@
 
 namespace lampyris {
 
-// Where the transforms of a description take their origins, in the description's order, before they were rounded to floats.
+// The points to which the transforms of a description move their origins, in the description's order, before rounding to
+// floats.
 struct Places {
     glm::dvec3 camera{0.0};
     std::vector<glm::dvec3> shapes, instances, lights,
-        textures;  // of the world: an object's shapes are in their own space
+        textures;  // in world space, but those of an object's shapes are in the object's space
 };
 
-// Moves a scene whose distance from the origin is many times its size, as far as can be told before its files are read, so
-// that nothing but the size is left to be rounded. Returns the point that was made the origin; zero, and nothing moved, where
-// coordinates would not gain digits by it: the transforms, and with them the images, of ordinary scenes stay what they are.
+// Moves a scene to the origin if its distance from there is many times its size, so that coordinates are rounded in proportion
+// to the size alone. The size is estimated before the scene's meshes are read from their files. Returns the point that became
+// the origin. If coordinates would not gain accuracy, nothing is moved, and the result is zero: the transforms, and so the
+// images, of ordinary scenes stay as they are.
 glm::dvec3 recentre(SceneDescription& description, const Places& places);
 
 }  // namespace lampyris

@@ -1,4 +1,4 @@
-// The scene as flat arrays, ready for any backend, and the effects that it calls for.
+// The scene as flat arrays, ready for any backend, and the effects that it needs.
 #pragma once
 
 #include "core/effects.h"
@@ -44,13 +44,13 @@ struct Scene {
     std::vector<uint32_t> instance_sets;      // set of each instance; [0] = 0
 
     Effects effects;
-    // Tells kernels what the scene calls for.
+    // Writes the effects that the scene needs into its record, for kernels.
     void record_effects(uint64_t mask) {
         record.effects_low = uint32_t(mask);
         record.effects_high = uint32_t(mask >> 32);
     }
     std::string name;                      // file name of the scene
-    std::vector<std::string> notes;        // what was mapped or ignored, and is to be said ("Sampler zsobol: ...")
+    std::vector<std::string> notes;        // what was mapped or ignored, for the user to know ("Sampler zsobol: ...")
     std::vector<std::string> unsupported;  // with --skip-unsupported: what was left out
     uint64_t hash = 0;                     // of everything above
 

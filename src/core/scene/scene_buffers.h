@@ -20,7 +20,7 @@ SceneBuffer scene_buffer(uint32_t binding, const std::vector<T>& array, const ch
     return {binding, array.data(), array.size() * sizeof(T), name};
 }
 
-// All but what a BVH brings. They point into the scene.
+// All buffers but those of a BVH. They point into the scene.
 std::vector<SceneBuffer> scene_buffers(const Scene& scene);
 
 }  // namespace lampyris

@@ -49,7 +49,7 @@ glm::vec3 rec709_from_xyz(glm::vec3 xyz) {
 }
 
 float blackbody(float wavelength, float kelvin) {
-    // Planck 1901; the constants are exact in the SI of 2019. The peak is where Wien's displacement law has it.
+    // Planck 1901; the constants are exact in the SI of 2019. The maximum follows from Wien's displacement law.
     constexpr double kC1 = 2.0 * 6.62607015e-34 * 299792458.0 * 299792458.0;
     constexpr double kC2 = 6.62607015e-34 * 299792458.0 / 1.380649e-23;
     if (!(kelvin > 0.0f)) return 0.0f;
@@ -68,7 +68,7 @@ glm::vec3 reflectance_rgb(const std::function<float(float)>& spectrum) {
     const auto rgb_under_d65 = [](const std::function<float(float)>& reflectance) {
         return rec709_from_xyz(glm::vec3(integrate_xyz([&](float w) { return reflectance(w) * illuminant_d65(w); })));
     };
-    // Divided by white's own colour: the table's D65 and Rec.709's white differ in the fourth digit.
+    // Divided by white's own colour, because the table's D65 and Rec.709's white differ in the fourth digit.
     static const glm::vec3 white = rgb_under_d65([](float) { return 1.0f; });
     return rgb_under_d65(spectrum) / white;
 }

@@ -1,7 +1,7 @@
-// Spectra as the scene file gives them -> linear Rec.709, the only colour that kernels see.
+// Spectra of the scene file -> linear Rec.709, the only colour that kernels know.
 //
-// pbrt-v4 renders spectrally and converts at the film; here each spectrum is converted where it enters. A light's spectrum
-// goes through the CIE 1931 observer; a reflectance is seen under D65 (which is what an rgb light is in pbrt-v4), so that a
+// pbrt-v4 renders spectrally and converts at the film; here each spectrum is converted when it is read. A light's spectrum is
+// weighted by the CIE 1931 observer. A reflectance is seen under D65 (which is pbrt-v4's illuminant for rgb lights), so that a
 // reflectance of one is white. docs/decisions explains what this approximates.
 #pragma once
 
@@ -46,7 +46,7 @@ glm::vec3 reflectance_rgb(const std::function<float(float)>& spectrum);
 // their chromaticity.
 glm::vec3 rec709_from(std::string_view color_space, glm::vec3 rgb, SpectrumUse use);
 
-// The spectra that pbrt-v4 knows by name; nothing for an unknown name.
+// The spectra that pbrt-v4 knows by name; empty for an unknown name.
 const SampledSpectrum* named_spectrum(std::string_view name);
 std::vector<std::string> named_spectra();
 
@@ -57,11 +57,11 @@ struct ConductorRgb {
 };
 ConductorRgb conductor_rgb(const SampledSpectrum& eta, const SampledSpectrum& k);
 
-// A parameter of type rgb, blackbody, spectrum or float as a sampled spectrum, where it is one; nothing for rgb.
-// Errors (unknown name, unreadable file, unordered wavelengths) are reported.
+// A parameter of type blackbody, spectrum or float as a sampled spectrum; empty for rgb. Errors (unknown name, unreadable file,
+// unordered wavelengths) are reported.
 std::optional<SampledSpectrum> sampled_spectrum(const Parameter& parameter, const std::string& directory,
                                                 Diagnostics& diagnostics);
-// Any spectrum parameter as linear Rec.709; nothing, and an error, where it is wrong.
+// Any spectrum parameter as linear Rec.709; empty, with the error reported, if it is wrong.
 std::optional<glm::vec3> spectrum_rgb(const Parameter& parameter, SpectrumUse use, const std::string& directory,
                                       Diagnostics& diagnostics);
 

@@ -88,12 +88,12 @@ std::vector<std::string> named_spectra() {
     return names;
 }
 
-// A metal per channel. What is seen of a metal is its reflectance; so the reflectance at normal incidence is computed for
-// every wavelength and turned into a colour, R. eta is the mean under the positive part of the channel's sensitivity to
-// white light, and k follows from R = ((eta - 1)^2 + k^2) / ((eta + 1)^2 + k^2): at normal incidence the colour is
-// then that of the spectrum (within what Rec.709 and R < 1 can show), and at grazing angles it goes to white all the same.
+// A metal per channel. The visible property of a metal is its reflectance, so the reflectance at normal incidence is computed
+// for every wavelength and converted to a colour, R. eta is the mean under the positive part of the channel's sensitivity to
+// white light, and k follows from R = ((eta - 1)^2 + k^2) / ((eta + 1)^2 + k^2). So at normal incidence the colour is that of
+// the spectrum (as far as Rec.709 and R < 1 can show it), and at grazing angles it still goes to white.
 ConductorRgb conductor_rgb(const SampledSpectrum& eta, const SampledSpectrum& k) {
-    const auto held = [](const SampledSpectrum& spectrum, float w) {  // its ends hold beyond them
+    const auto held = [](const SampledSpectrum& spectrum, float w) {  // the values at its ends continue beyond them
         return spectrum.at(std::clamp(w, spectrum.wavelengths.front(), spectrum.wavelengths.back()));
     };
     const auto reflectance = [&](float w) {
@@ -112,7 +112,7 @@ ConductorRgb conductor_rgb(const SampledSpectrum& eta, const SampledSpectrum& k)
     for (int c = 0; c < 3; ++c) {
         const double r = colour[c];
         const double lowest = (double(rgb.eta[c]) - 1.0) / (double(rgb.eta[c]) + 1.0);
-        // Where even k = 0 reflects more than R, eta alone must follow it.
+        // If even k = 0 reflects more than R, eta alone determines R.
         if (lowest * lowest >= r) {
             const double root = std::sqrt(r);
             rgb.eta[c] = float(rgb.eta[c] >= 1.0f ? (1.0 + root) / (1.0 - root) : (1.0 - root) / (1.0 + root));

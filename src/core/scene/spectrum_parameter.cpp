@@ -19,7 +19,7 @@ Location place_of(const Parameter& parameter) {
     return parameter.value_location.known() ? parameter.value_location : parameter.location;
 }
 
-// Pairs of wavelength and value; wavelengths rise.
+// Pairs of wavelength and value; wavelengths must increase.
 std::optional<SampledSpectrum> from_pairs(const std::vector<float>& pairs, Location where, const std::string& what,
                                           Diagnostics& diagnostics) {
     if (pairs.empty() || pairs.size() % 2 != 0) {
@@ -44,7 +44,7 @@ std::optional<SampledSpectrum> from_pairs(const std::vector<float>& pairs, Locat
     return spectrum;
 }
 
-// A text file of numbers, wavelength and value by turns; '#' starts a comment.
+// A text file of numbers, alternating wavelength and value; '#' starts a comment.
 std::optional<SampledSpectrum> from_file(const std::string& path, Location where, Diagnostics& diagnostics) {
     std::ifstream file(path, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(file), {}};
@@ -142,7 +142,7 @@ std::optional<glm::vec3> spectrum_rgb(const Parameter& parameter, SpectrumUse us
         for (float& value : spectrum->values) value = std::max(value, 0.0f);
     }
     const auto at = [&](float wavelength) { return spectrum->at(wavelength); };
-    // Out of Rec.709's gamut only by a little, and less than no light is none.
+    // Colours are at most slightly outside of Rec.709's gamut; negative components become zero.
     const glm::vec3 rgb = glm::max(use == SpectrumUse::kLight ? light_rgb(at) : reflectance_rgb(at), glm::vec3(0.0f));
     return use == SpectrumUse::kAlbedo ? glm::min(rgb, glm::vec3(1.0f)) : rgb;
 }

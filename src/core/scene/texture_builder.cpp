@@ -208,7 +208,8 @@ uint32_t TextureBuilder::image_program(const std::string& filename, glm::vec3 sc
 uint32_t TextureBuilder::image(const std::string& filename, Content content, Location where) {
     ImageRequest request{context_.resolve(filename), {}, {}, where};
     if (content == Content::kNormalMap) request.encoding.kind = TexelEncoding::Kind::kLinear;
-    // Looked up without interpolation, as pbrt does: so the density from which directions are sampled matches the light exactly.
+    // Looked up without interpolation, as in pbrt, so that the density from which directions are sampled matches the light
+    // exactly.
     if (content == Content::kProjection) request.lookup = {kernel::WRAP_CLAMP, kernel::FILTER_POINT};
     if (content == Content::kEnvironment) request.lookup = {kernel::WRAP_OCTAHEDRAL, kernel::FILTER_POINT};
     request.encoding.emits = content == Content::kProjection || content == Content::kEnvironment;

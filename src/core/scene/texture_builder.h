@@ -1,5 +1,5 @@
 // The scene's textures as postfix programs (core/kernel/layout.h: TextureOp) and its image files as texels.
-// Both are made when something first asks for them: a texture that nothing uses costs nothing.
+// Both are built on first use: a texture that nothing uses costs nothing.
 #pragma once
 
 #include "core/error.h"
@@ -22,21 +22,21 @@ struct TextureDescription;
 
 class TextureBuilder {
  public:
-    // Uses the context only when it is asked for something: the context may hold a reference to this builder.
+    // Only later calls use the context: it may hold a reference to this builder, and so be incomplete now.
     explicit TextureBuilder(BuildContext& context) : context_(context) {}
 
-    // Reads every Texture directive, so that errors in unused ones are told, too. The functions below call it.
+    // Reads every Texture directive, so that errors in unused ones are reported, too. The functions below call it.
     void define_all();
 
-    // The program (index of its first TextureOp) of a texture by its name. Where there is none, or it is wrong: an error
-    // at `where`, or at the texture, and kNone.
+    // The program (index of its first TextureOp) of a texture, by the texture's name. kNone if there is none or it is wrong,
+    // with an error reported at `where` or at the texture.
     uint32_t float_program(const std::string& name, Location where);
     uint32_t color_program(const std::string& name, Location where);
-    // A program that shows an image file over (u, v) in [0, 1]^2 (clamped, v up), times `scale`: textured area lights.
+    // A program that maps an image file to (u, v) in [0, 1]^2 (clamped, v up), times `scale`; for textured area lights.
     uint32_t image_program(const std::string& filename, glm::vec3 scale, Location where);
 
-    // An image record (index into Scene::images) of a file. kNone, and an error at `where`, where it cannot be read.
-    // Normal maps are linear; environments are octahedral squares; these and projections are looked up texel by texel.
+    // An image record (index into Scene::images) for a file. kNone, with an error reported at `where`, if it cannot be read.
+    // Normal maps are linear; environments are octahedral squares; these and projections are looked up without interpolation.
     enum class Content { kColor, kNormalMap, kEnvironment, kProjection };
     uint32_t image(const std::string& filename, Content content, Location where);
     // The decoded texels of an image record: linear Rec.709, as kernels see them, row by row from the top (3 floats each).
@@ -46,7 +46,7 @@ class TextureBuilder {
 
     // ---- For texture plugins (texture_plugin.h) ----
 
-    // The program of an operand. Its image operations hold an index of request_image until they are emitted.
+    // The program of an operand. Until it is emitted, its image operations hold indices returned by request_image.
     TextureProgram operand(ParameterReader& reader, std::string_view name, float absent, bool is_spectrum);
     uint32_t request_image(ImageRequest request);
     BuildContext& context() { return context_; }
@@ -61,7 +61,7 @@ class TextureBuilder {
 
     void define(TextureDescription& description);
     Texture* find(const std::string& name, bool is_spectrum, Location where);
-    // `where` and `what` ask for its effects.
+    // `where` and `what` are named as the reason for its effects.
     uint32_t emit(const TextureProgram& program, Location where, const std::string& what);
     uint32_t named_program(const std::string& name, bool is_spectrum, Location where);
     uint32_t load(const ImageRequest& request);
@@ -70,8 +70,8 @@ class TextureBuilder {
     BuildContext& context_;
     std::unique_ptr<ImageStore> images_;
     std::vector<ImageRequest> requests_;
-    std::unordered_set<std::string> failed_;  // images that were reported
-    Textures textures_[2];                    // float, spectrum: names of one kind do not hide the other's
+    std::unordered_set<std::string> failed_;  // paths of images whose errors were reported
+    Textures textures_[2];                    // float and spectrum: a name of one kind does not hide one of the other
     std::map<std::string, uint32_t> image_programs_;
     bool defined_ = false;
 };

@@ -14,7 +14,7 @@ namespace {
 constexpr const char* kMappings[] = {"uv", "spherical", "cylindrical",
                                      "planar"};  // in order of kernel::MAPPING_*, from MAPPING_UV on
 
-// Texture-from-world; the identity, and an error, where the transform in force cannot be inverted.
+// Texture-from-world; if the current transform cannot be inverted, the identity, and an error is reported.
 glm::dmat4 texture_from_world(const TextureContext& context) {
     const glm::dmat4 to(context.texture.world_from_texture.matrix[0]);
     const double determinant = glm::determinant(glm::dmat3(to));
@@ -26,7 +26,7 @@ glm::dmat4 texture_from_world(const TextureContext& context) {
 
 glm::vec4 row(const glm::dmat4& m, int i) { return {float(m[0][i]), float(m[1][i]), float(m[2][i]), float(m[3][i])}; }
 
-// s = delta + dot(axis, texture-space position), as a row over the world's position.
+// s = delta + dot(axis, texture-space position), as a row vector applied to the world-space position.
 glm::vec4 planar_row(const TextureContext& context, const glm::dmat4& m, const char* name, glm::dvec3 axis,
                      float delta) {
     if (const std::vector<float> given = context.reader.get_tuple(name, 3); given.size() == 3)
@@ -55,7 +55,7 @@ TextureProgram TextureContext::float_operand(std::string_view name, float absent
 }
 
 TextureProgram TextureContext::combine(const std::vector<TextureProgram>& operands, const kernel::TextureOp& op) {
-    // What is known already is not computed at every hit.
+    // Constant operands are combined here, so that this is not computed at every hit.
     const bool all_constant =
         std::all_of(operands.begin(), operands.end(), [](const TextureProgram& p) { return p.is_constant(); });
     if (op.operation == kernel::TEXTURE_SCALE && all_constant)

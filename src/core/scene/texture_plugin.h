@@ -1,4 +1,5 @@
-// What a texture's file in textures/ needs: the program that it makes, the parameters that it reads, and its registration.
+// What the file of a texture in textures/ needs: the program that it builds, the parameters that it reads, and its
+// registration.
 #pragma once
 
 #include "core/parameters.h"
@@ -17,16 +18,16 @@ namespace lampyris {
 
 class TextureBuilder;
 
-// A program in the making: operations in postfix order.
+// A program under construction: operations in postfix order.
 struct TextureProgram {
     std::vector<kernel::TextureOp> ops;
-    uint32_t depth = 1;  // of the stack that it needs
+    uint32_t depth = 1;  // stack entries that it needs
     bool is_constant() const { return ops.size() == 1 && ops[0].operation == kernel::TEXTURE_CONSTANT; }
     glm::vec3 constant() const { return glm::vec3(ops[0].a); }
 };
 TextureProgram constant_program(glm::vec3 value);
 
-// An image that a program will need when something uses it.
+// An image that a program will need once something uses the program.
 struct ImageRequest {
     std::string path;  // complete
     TexelEncoding encoding;
@@ -39,21 +40,23 @@ struct TextureContext {
     const TextureDescription& texture;
     ParameterReader& reader;
 
-    // The operand `name`, or `absent`: of the texture's own type (float or spectrum), or a float.
+    // The program of the operand `name`, or the constant `absent`. operand() reads the texture's own type (float or spectrum),
+    // float_operand() a float.
     TextureProgram operand(std::string_view name, float absent);
     TextureProgram float_operand(std::string_view name, float absent);
-    // Operands, then the operation that combines them. Where the result is larger than kernels evaluate: an error, and a constant.
+    // Operands, then the operation that combines them. If the result exceeds the kernels' limits, reports an error and returns
+    // a constant.
     TextureProgram combine(const std::vector<TextureProgram>& operands, const kernel::TextureOp& op);
-    // Two-dimensional mappings, as with_mapping() declares them.
+    // Reads a two-dimensional mapping, whose parameters with_mapping() declares.
     void read_mapping(kernel::TextureOp& op);
-    // Rows of texture-from-world, for textures in space.
+    // Sets the rows of texture-from-world, for three-dimensional textures.
     void read_position_mapping(kernel::TextureOp& op);
 
  private:
     void read_transform(kernel::TextureOp& op, uint32_t mapping);
 };
 
-// `specs`, and those of the mapping.
+// `specs`, plus the parameters of the mapping.
 ParameterSpecs with_mapping(ParameterSpecs specs);
 
 using TextureFactory = TextureProgram (*)(TextureContext&);

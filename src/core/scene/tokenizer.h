@@ -23,16 +23,16 @@ struct Token {
 
 class Tokenizer {
  public:
-    // `file` is the text's number in the Sources that `diagnostics` knows. `mapping`, where given, is the mapped file that
-    // the text lies in: its pages are released as they are left behind.
+    // `file` is the text's number in the Sources that `diagnostics` knows. `mapping`, if given, is the mapped file that
+    // contains the text: its pages are released once they have been read.
     Tokenizer(std::string_view text, uint32_t file, Diagnostics& diagnostics, const FileText* mapping = nullptr);
 
-    Token next();  // kEnd for ever after the last
+    Token next();  // at the end kEnd, and on every later call
     const Token& peek();
     std::string string_value(const Token& token);  // with its escapes (\n, \t, \", ...) resolved
 
-    // For loops over long arrays of numbers: the text from the first character of the next token on, as
-    // [cursor(), end()), and where reading goes on.
+    // For loops over long arrays of numbers: the text from the first character of the next token on, as [cursor(), end()), and
+    // the position from which to continue.
     const char* cursor();
     const char* end() const { return end_; }
     void set_cursor(const char* cursor);

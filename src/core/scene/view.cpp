@@ -24,10 +24,10 @@ RegisterSampler::RegisterSampler(const char* name, const char* summary, Paramete
 
 namespace {
 
-// Of pbrt-v4's, those that Lampyris has no plugin for.
+// pbrt-v4's types for which Lampyris has no plugin.
 bool is_pbrts(std::string_view type) { return type == "realistic" || type == "spherical" || type == "spectral"; }
 
-// Finds the plugin of a directive that may be absent (then `fallback` holds, as in pbrt-v4) and hands it a reader.
+// Finds the plugin of a directive and gives it a reader. If the directive is absent, `fallback` is used, as in pbrt-v4.
 template <typename Factory, typename Call>
 void build_entity(BuildContext& context, const Registry<Factory>& registry, Entity& entity, const char* fallback,
                   Call&& call) {
@@ -44,7 +44,7 @@ void build_entity(BuildContext& context, const Registry<Factory>& registry, Enti
     }
     ParameterReader reader(registry.find_info(entity.type)->parameters, entity, context.diagnostics);
     call(*factory, reader);
-    if (replaced) return;  // its own parameters were meant for the other
+    if (replaced) return;  // its parameters were meant for the replaced plugin
     reader.finish(registry.kind());
 }
 
@@ -54,7 +54,7 @@ void read_options(BuildContext& context) {
         const auto* truths = std::get_if<std::vector<uint8_t>>(&option.values);
         const bool is_on = truths && !truths->empty() && truths->front() != 0;
         if (option.name == "seed" && numbers && !numbers->empty()) {
-            if (context.description.sampler.parameters.has("seed")) continue;  // the sampler's own counts
+            if (context.description.sampler.parameters.has("seed")) continue;  // the sampler's own seed wins
             context.settings.seed = uint32_t(numbers->front());
         } else if (is_on && (option.name == "disablepixeljitter" || option.name == "forcediffuse")) {
             context.diagnostics.unsupported(option.location, fmt::format("option \"{}\"", option.name));
@@ -76,7 +76,7 @@ void read_accelerator(BuildContext& context) {
 void build_view(BuildContext& context) {
     SceneDescription& description = context.description;
     kernel::CameraRecord& record = context.scene.record.camera;
-    // The camera's shutter is open for that long; a Film's "exposuretime" overrides it.
+    // How long the camera's shutter is open; a Film's "exposuretime" overrides it.
     record.imaging_ratio = 1.0f;
     build_entity(context, film_registry(), description.film, "rgb", [&](FilmFactory factory, ParameterReader& reader) {
         FilmContext film{context, reader, record};

@@ -13,8 +13,8 @@ namespace lampyris {
 
 namespace {
 
-// The rectangle of the plane z = 1 that the picture shows: xmin, xmax, ymin, ymax before the field of view is applied.
-// The shorter side is [-1, 1] (pbrt-v4, cameras.cpp).
+// The rectangle of the plane z = 1 that the picture shows, as xmin, xmax, ymin, ymax, before the field of view is applied. The
+// shorter side is [-1, 1] (pbrt-v4, cameras.cpp).
 std::array<float, 4> screen_window(CameraContext& camera) {
     const float aspect = camera.reader.has("frameaspectratio") ? camera.reader.get_float("frameaspectratio")
                                                                : camera.resolution.x / camera.resolution.y;

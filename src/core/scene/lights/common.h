@@ -13,7 +13,7 @@ kernel::LightRecord blank_light(uint32_t kind);
 glm::vec3 transformed_point(const glm::mat4& m, glm::vec3 p);
 // The light's intensity "I" (or "L"), times "scale".
 Spectrum read_emission(LightContext& context, std::string_view name);
-// from - to -> the direction of the light, or an error where they are one.
+// The direction of the light, from the point "from" to the point "to". Reports an error if they coincide.
 glm::vec3 read_direction(LightContext& context, glm::vec3& from);
 ParameterSpec emission_spec(const std::string& name, const std::string& of_what);
 ParameterSpec scale_spec();

@@ -42,10 +42,11 @@ void build_projection(LightContext& context) {
     const kernel::ImageRecord& image = context.build.scene.images[record.image];
     const uint32_t width = image.width, height = image.height;
     const double aspect = double(width) / height;
-    // The field of view is that of the shorter side, as a camera's.
+    // The field of view is that of the shorter side, as for cameras.
     const double x = half * std::fmax(aspect, 1.0), y = half * std::fmax(1.0 / aspect, 1.0);
     record.v2 = {float(-x), float(-y), float(x), float(y)};
-    // Luminous power: intensity over solid angle, which is cos^3 per area of the picture at z = 1.
+    // Luminous power: the integral of intensity over solid angle; the area element of the picture at z = 1 subtends cos^3 of
+    // its area.
     const std::vector<glm::vec3> pixels = context.build.textures.pixels(record.image);
     double emitted = 0.0;
     for (uint32_t j = 0; j < height; ++j)
@@ -61,7 +62,7 @@ void build_goniometric(LightContext& context) {
     kernel::LightRecord record = blank_light(kernel::LIGHT_GONIOMETRIC);
     const Spectrum intensity = read_emission(context, "I");
     if (!begin_light(context, record, TextureBuilder::Content::kEnvironment)) {
-        // Without an image it is a point light, as in pbrt-v4.
+        // Without an image it is a plain point light, as in pbrt-v4.
         context.ask(kernel::EFFECT_POINT_LIGHTS);
         record = blank_light(kernel::LIGHT_POINT);
         record.v0 = {transformed_point(context.light.world_from_light.matrix[0], glm::vec3(0.0f)), 0.0f};

@@ -57,7 +57,7 @@ void build_image(LightContext& context, const std::string& filename, float scale
     for (uint32_t y = 0; y < height; ++y)
         for (uint32_t x = 0; x < width; ++x) {
             const double luminance = luminance_of(pixels[size_t(y) * width + x]);
-            // A weight for choosing: what is not black must have one.
+            // A weight for choosing the light: it must be positive unless the light is black.
             using Limits = std::numeric_limits<float>;
             weights.push_back(
                 luminance > 0.0 ? float(std::clamp(luminance, double(Limits::min()), double(Limits::max()))) : 0.0f);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
-// `sphere` is what an intensity of one sends in all, in sr.
+// `sphere` is the power that a unit intensity emits in total, in sr.
 void add_light(LightContext& context, kernel::LightRecord record, Spectrum intensity, float sphere) {
     if (const float power = context.reader.get_float("power"); power > 0.0f) intensity *= power / sphere;
     record.emission = intensity;

@@ -14,10 +14,10 @@ namespace {
 constexpr uint32_t kNoFace = 0xffffffffu;
 using Face = std::array<uint32_t, 3>;
 
-// Who is next to whom: neighbour[3 f + k] is the face across the edge from corner k of f to the next corner.
+// Adjacency: neighbour[3 f + k] is the face across the edge from corner k of f to the next corner.
 struct Topology {
     std::vector<uint32_t> neighbour;
-    std::vector<uint32_t> first_face;  // of each vertex; kNoFace where it is in none
+    std::vector<uint32_t> first_face;  // one face of each vertex; kNoFace if it has none
     std::string error;
 };
 
@@ -51,8 +51,8 @@ Topology connect(size_t vertices, const std::vector<Face>& faces) {
 
 uint32_t corner_of(const Face& face, uint32_t vertex) { return face[0] == vertex ? 0u : face[1] == vertex ? 1u : 2u; }
 
-// The vertices around one: of an interior vertex clockwise; of a boundary vertex counter-clockwise from one end of the
-// boundary to the other (seen from where the faces are counter-clockwise).
+// The neighbours of a vertex. Those of an interior vertex are in clockwise order. Those of a boundary vertex run
+// counter-clockwise from one end of the boundary to the other (seen from the side where the faces are counter-clockwise).
 struct Ring {
     std::vector<uint32_t> vertices;
     bool boundary = false;
@@ -110,7 +110,7 @@ void subdivide_once(std::vector<glm::vec3>& positions, std::vector<Face>& faces,
         walk_ring(faces, topology, v, ring);
         next[v] = smoothed(positions, v, ring, beta(ring.vertices.size()), 1.0f / 8.0f);
     }
-    // A new vertex on every edge, made by the first of its faces.
+    // A new vertex on every edge, made by the first of the edge's faces.
     std::vector<uint32_t> middle(3 * faces.size(), kNoFace);
     for (uint32_t f = 0; f < faces.size(); ++f)
         for (uint32_t k = 0; k < 3; ++k) {
@@ -118,7 +118,7 @@ void subdivide_once(std::vector<glm::vec3>& positions, std::vector<Face>& faces,
             const uint32_t a = faces[f][k], b = faces[f][(k + 1) % 3], across = topology.neighbour[3 * f + k];
             glm::vec3 p = 0.5f * (positions[a] + positions[b]);
             if (across != kNoFace) {
-                const uint32_t other = (corner_of(faces[across], a) + 2) % 3;  // the edge is b -> a over there
+                const uint32_t other = (corner_of(faces[across], a) + 2) % 3;  // in the neighbour, the edge is b -> a
                 p = 3.0f / 8.0f * (positions[a] + positions[b]) +
                     1.0f / 8.0f *
                         (positions[faces[f][(k + 2) % 3]] +

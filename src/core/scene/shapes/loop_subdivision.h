@@ -13,11 +13,10 @@ namespace lampyris {
 struct SubdividedMesh {
     std::vector<glm::vec3> positions, normals;  // of the limit surface
     std::vector<std::array<uint32_t, 3>> faces;
-    std::string error;  // what is wrong with the input; empty where nothing is
+    std::string error;  // the error in the input; empty if there is none
 };
 
-// Indices must be in range. The normals are those of pbrt-v4: opposite to the side from which the faces run
-// counter-clockwise.
+// Indices must be in range. Normals point as in pbrt-v4: away from the side on which the faces run counter-clockwise.
 SubdividedMesh loop_subdivide(std::vector<glm::vec3> positions, std::vector<std::array<uint32_t, 3>> faces, int levels);
 
 }  // namespace lampyris

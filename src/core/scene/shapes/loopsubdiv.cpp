@@ -8,7 +8,7 @@ namespace lampyris {
 
 namespace {
 
-constexpr size_t kMostFaces = size_t(1) << 24;  // the connections of so many take about 3 GB
+constexpr size_t kMostFaces = size_t(1) << 24;  // the adjacency of this many takes about 3 GB
 
 void build(ShapeContext& context) {
     ParameterReader& reader = context.reader;

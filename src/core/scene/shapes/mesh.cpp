@@ -12,7 +12,7 @@ namespace lampyris {
 
 namespace {
 
-// Appends, or takes the storage over where there is nothing yet: one large mesh is not copied.
+// Appends; takes over the storage if the array is empty, so that a single large mesh is not copied.
 template <typename T>
 void append(std::vector<T>& to, std::vector<T>&& from) {
     if (to.empty()) {
@@ -35,7 +35,7 @@ void transform_mesh(Mesh& mesh, const glm::mat4& matrix, bool negate_normals) {
     if (matrix != glm::mat4(1.0f))
         for (size_t i = 0; i < mesh.positions.size() / 3; ++i)
             put(mesh.positions, i, glm::vec3(matrix * glm::vec4(point(mesh.positions, i), 1.0f)));
-    // Normals go by the inverse's transpose, and are not made unit length: interpolation is pbrt-v4's.
+    // Normals are transformed by the inverse transpose, and are not normalised: pbrt-v4 interpolates them like this.
     const glm::mat3 normal_matrix(glm::transpose(glm::inverse(glm::dmat3(glm::mat3(matrix)))));
     const float sign = negate_normals ? -1.0f : 1.0f;
     if (normal_matrix != glm::mat3(1.0f) || negate_normals)
@@ -83,10 +83,10 @@ bool read_mesh(ShapeContext& context, Mesh& mesh) {
     mesh.positions = reader.take_floats("P");
     mesh.normals = reader.take_floats("N");
     mesh.uvs = reader.take_floats("uv");
-    // Negative ones become huge, and are out of range all the same.
+    // Negative indices become huge, and are reported as out of range.
     const std::vector<int32_t> indices = reader.take_ints("indices");
     mesh.indices.assign(indices.begin(), indices.end());
-    // One face may do without indices, as in pbrt-v4.
+    // A single face needs no indices, as in pbrt-v4.
     if (mesh.indices.empty() && mesh.positions.size() == size_t(3 * mesh.corners))
         for (uint32_t i = 0; i < mesh.corners; ++i) mesh.indices.push_back(i);
     return check_mesh(context, mesh);
@@ -94,7 +94,7 @@ bool read_mesh(ShapeContext& context, Mesh& mesh) {
 
 bool check_mesh(ShapeContext& context, const Mesh& mesh) {
     ParameterReader& reader = context.reader;
-    // A mesh from a file has its parameters there; the message then stands at the file's name.
+    // If the mesh comes from a file, so do its parameters; the error is then reported at the file's name.
     const auto fail = [&](const char* name, const std::string& message, const std::string& hint) {
         context.build.diagnostics.error(reader.location(reader.has(name) ? name : "filename"), message, hint);
         return false;
@@ -102,7 +102,7 @@ bool check_mesh(ShapeContext& context, const Mesh& mesh) {
     const size_t vertices = mesh.positions.size() / 3;
     if (mesh.positions.empty() && reader.has("P"))
         return fail("P", "the mesh has no vertices", "\"point3 P\" with 3 numbers a vertex");
-    if (mesh.positions.empty()) return false;  // told as a missing parameter
+    if (mesh.positions.empty()) return false;  // reported as a missing parameter
     if (mesh.positions.size() % 3 != 0)
         return fail("P", fmt::format("\"P\" has {} numbers", mesh.positions.size()), "3 a vertex");
     if (mesh.indices.empty())
@@ -135,10 +135,10 @@ bool check_mesh(ShapeContext& context, const Mesh& mesh) {
 
 namespace {
 
-// What of a vertex cannot be used.
+// The attributes of a vertex that are not finite and cannot be used.
 enum Unusable : uint8_t { kNormal = 1, kUv = 2 };
 
-// For each vertex, of `components` values: whether one of them is not finite. True where that is so of any.
+// Marks each vertex of whose `components` values one is not finite. Returns whether there are any.
 bool mark_unusable(const std::vector<float>& values, size_t components, Unusable mark, std::vector<uint8_t>& marks) {
     bool any = false;
     for (size_t i = 0; i < values.size(); ++i) {
@@ -172,7 +172,7 @@ void warn_of_unusable(ShapeContext& context, const Mesh& mesh, const std::vector
                     mark == kNormal ? "are shaded flat" : "have those of a mesh that gives none"));
 }
 
-// The faces with these marks, as a mesh of their own without what cannot be used.
+// The faces with exactly these marks, as a separate mesh without the attributes that cannot be used.
 Mesh faces_with(const Mesh& mesh, const std::vector<uint8_t>& marks, uint8_t wanted) {
     constexpr uint32_t kUnset = 0xffffffffu;
     Mesh part;
@@ -223,8 +223,8 @@ void add_usable(ShapeContext& context, Mesh&& mesh) {
 
 }  // namespace
 
-// A face with a vertex whose normal is not finite is shaded flat, as pbrt-v4 does where it is NaN; where a texture coordinate
-// is not finite, the face has those of a mesh without. Other faces keep theirs.
+// If the normal of one of its vertices is not finite, a face is shaded flat, as pbrt-v4 does for NaN. If a texture coordinate
+// is not finite, the face gets those of a mesh without texture coordinates. Other faces keep theirs.
 void add_mesh(ShapeContext& context, Mesh&& mesh) {
     const ShapeDescription& shape = context.shape;
     transform_mesh(mesh, shape.world_from_object.matrix[0], shape.reverse_orientation);

@@ -20,7 +20,7 @@ void build(ShapeContext& context) {
             context.build.diagnostics.unsupported(reader.location(name), "displacement of a mesh",
                                                   "without it, the mesh is as in the file");
     }
-    if (filename.empty()) return;  // told as a missing parameter
+    if (filename.empty()) return;  // reported as a missing parameter
     const std::string path = context.build.resolve(filename);
     std::error_code code;
     if (!std::filesystem::is_regular_file(path, code)) {
@@ -45,7 +45,7 @@ void build(ShapeContext& context) {
     if (ply.triangles.empty() && ply.quads.empty())
         context.build.diagnostics.warning(reader.location("filename"),
                                           fmt::format("the mesh {} has no faces", shown(filename)));
-    // Quads become bilinear patches beside the triangles, as in pbrt-v4, with vertices of their own where there are both.
+    // Quads become bilinear patches beside the triangles, as in pbrt-v4. If there are both, each kind gets vertices of its own.
     Mesh quads;
     const bool has_triangles = !ply.triangles.empty();
     if (!ply.quads.empty()) {

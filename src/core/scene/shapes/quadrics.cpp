@@ -11,7 +11,7 @@ namespace lampyris {
 
 namespace {
 
-// By how much a transform stretches lengths, on average: exact for uniform scales. Chooses lights, nothing else.
+// The factor by which a transform stretches lengths, on average; exact for uniform scales. Only used for choosing lights.
 float mean_stretch(const glm::mat4& m) {
     return float(std::cbrt(std::abs(glm::determinant(glm::dmat3(glm::mat3(m))))));
 }
@@ -35,7 +35,7 @@ float read_phi(ShapeContext& context) {
     return context.reader.get_float("phimax") * std::numbers::pi_v<float> / 180.0f;
 }
 
-// zmin and zmax in order, and not equal.
+// Sorts zmin and zmax; reports an error if they are equal.
 bool read_heights(ShapeContext& context, float& low, float& high) {
     if (low > high) std::swap(low, high);
     if (low < high) return true;
