@@ -17,7 +17,7 @@ struct Backend {
     std::function<std::vector<DeviceInfo>()> list;
 };
 
-// Registrations run before main, in no order: names are sorted when asked for.
+// Registrations run before main, in no defined order, so names are sorted on demand.
 std::map<std::string, Backend>& backends() {
     static std::map<std::string, Backend> map;
     return map;

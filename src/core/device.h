@@ -1,5 +1,5 @@
-// A device owns buffers, runs kernels and traces rays. Integrators and tests talk to this interface only: the host schedule
-// is as shared as the kernels are.
+// A device owns buffers, runs kernels and traces rays. Integrators and tests use only this interface: all backends share the
+// host's schedule as well as the kernels.
 #pragma once
 
 #include "core/error.h"
@@ -19,8 +19,8 @@ namespace lampyris {
 
 struct Scene;
 
-// Memory that kernels see. Host and device meet through upload and download; on devices whose memory the host sees, both
-// are plain copies.
+// Memory that kernels access. The host exchanges data with it by upload and download; if the host can access the device's
+// memory, both are plain copies.
 class Buffer {
  public:
     virtual ~Buffer() = default;
@@ -38,23 +38,24 @@ class DeviceScene {
 };
 using DeviceSceneHandle = std::shared_ptr<DeviceScene>;
 
-// A buffer, and the name that a kernel knows it by (BUFFER_RO, BUFFER_RW).
+// A buffer, and its name in a kernel (BUFFER_RO, BUFFER_RW).
 struct NamedBuffer {
-    std::string_view name;  // outlives the call: a literal, as a rule
+    std::string_view name;  // must outlive the call; usually a literal
     BufferHandle buffer;
 };
 
 // A kernel file with a set of effects, ready to run on a device (compiled, for Vulkan).
 class Kernel {
  public:
-    // `found`: the buffers that the device itself knows of; they are taken where the kernel has no C++ build, which knows all.
+    // `found`: the buffers that the device itself found in the kernel. They are used if there is no C++ build, which would list
+    // all buffers.
     Kernel(std::string_view file, std::vector<KernelBuffer> found = {});
     virtual ~Kernel() = default;
     const std::string& file() const { return file_; }
     const std::vector<KernelBuffer>& buffers() const { return buffers_; }
     bool declares(std::string_view buffer) const;
-    // What is given, in the order of bindings. Throws std::logic_error where a buffer is missing, unknown or given twice, or has no room
-    // for an element.
+    // The given buffers, in the order of bindings. Throws std::logic_error if a buffer is missing, unknown or given twice, or
+    // is too small for one element.
     std::vector<BufferHandle> bind(std::span<const NamedBuffer> given) const;
 
  private:
@@ -73,19 +74,19 @@ struct DeviceStatistics {
         spirv_bytes;  // size of each kernel's SPIR-V, by its file's name; empty on CPU backends
 };
 
-// A kernel could not do all of its work: a loop's bound or a stack was not enough, or the driver ended a loop early. Less work at
-// once may do.
+// A kernel could not finish its work: it exceeded a loop's bound or a stack, or the driver ended a loop early. Smaller
+// dispatches may succeed.
 class UnfinishedError : public MachineError {
  public:
     using MachineError::MachineError;
 };
 
-// What not every device can do.
+// Features that not every device has.
 enum class DeviceFeature {
     kInt64Atomics,
-    kRayQuery,   // rays of a scene are traced by hardware, or by what the driver has in its place
+    kRayQuery,   // scene rays are traced by hardware, or by the driver's emulation of it
     kBoxes,      // build_boxes
-    kLongLoops,  // loops of any length in a kernel; elsewhere the driver ends them, and run throws UnfinishedError
+    kLongLoops,  // kernels may have loops of any length; elsewhere the driver ends them, and run throws UnfinishedError
 };
 
 class Device {
@@ -93,10 +94,10 @@ class Device {
     virtual ~Device() = default;
     virtual std::string backend() const = 0;      // "cpu", "cpu-bvh2", "vulkan"
     virtual std::string description() const = 0;  // processor or device, driver
-    virtual unsigned threads() const = 0;         // 0 where it has no meaning
+    virtual unsigned threads() const = 0;         // 0 if it has no meaning
     virtual bool offers(DeviceFeature feature) const = 0;
 
-    // Throws MachineError where there is no memory for it.
+    // Throws MachineError if there is not enough memory.
     virtual BufferHandle create_buffer(size_t bytes, std::string_view name) = 0;
 
     // Builds acceleration structures and uploads the scene. The scene must outlive the result.
@@ -107,25 +108,26 @@ class Device {
     // outside `effects` may be left out. A kernel that traces rays or reads the scene needs a DeviceScene to run.
     virtual KernelHandle compile(std::string_view file, uint64_t effects) = 0;
 
-    // Runs the kernel for the indices [begin, begin + count), split as the device needs, with a buffer for each that it declares.
-    // Returns when it is done. `scene` may be null for kernels that use no scene buffer. With a count of 0 it gets the kernel ready for
-    // these buffers: some devices compile it anew for buffers above a size. Throws MachineError when the device fails, and
-    // UnfinishedError when a kernel reports an unfinished loop: what the buffers hold is then indeterminate.
+    // Runs the kernel for the indices [begin, begin + count), split as the device needs, with one buffer for each that the
+    // kernel declares. Returns when the kernel has finished. `scene` may be null for kernels that use no scene buffer. A count
+    // of 0 only prepares the kernel for these buffers: some devices compile it again for buffers above a size. Throws
+    // MachineError if the device fails, and UnfinishedError if a kernel reports an unfinished loop; the buffers' contents are
+    // then indeterminate.
     virtual void run(const Kernel& kernel, const DeviceScene* scene, std::span<const NamedBuffer> buffers,
                      uint32_t begin, uint32_t count) = 0;
 
-    // Builds an acceleration structure over the first `count` boxes of a buffer, six floats each (low x, y, z, high x, y, z). It stays
-    // with the buffer until it is built anew; a kernel in which the buffer's binding is an accelerationStructureEXT asks it,
-    // by ray query, which boxes a ray meets. Returns the bytes that it takes. Throws MachineError where the device does not
-    // offer DeviceFeature::kBoxes.
+    // Builds an acceleration structure over the first `count` boxes of a buffer, six floats each (low x, y, z, high x, y, z).
+    // It stays with the buffer until it is built again. A kernel that declares the buffer's binding as an
+    // accelerationStructureEXT finds the boxes that a ray meets by a ray query. Returns the structure's size in bytes. Throws
+    // MachineError if the device does not offer DeviceFeature::kBoxes.
     virtual size_t build_boxes(const BufferHandle& boxes, uint32_t count);
 
     virtual DeviceStatistics statistics() const = 0;
 };
 
-// Invocations of a kernel that handles BATCH items in each (core/kernel/prelude.h).
+// Number of invocations of a kernel in which each invocation handles BATCH items (core/kernel/prelude.h).
 constexpr uint32_t batch_count(uint32_t items) {
-    constexpr uint32_t kItems = 16 * 32;  // of BATCH times the neighbours on a GPU
+    constexpr uint32_t kItems = 16 * 32;  // BATCH times the number of adjacent invocations on a GPU
     return (items / kItems + (items % kItems != 0)) * 32;
 }
 
@@ -144,17 +146,17 @@ struct DeviceInfo {
     std::map<std::string, std::string> features;
 };
 
-// A backend registers itself: how to make its device, and what devices there are.
+// Registers a backend: how to create its device, and which devices there are.
 struct BackendRegistration {
     BackendRegistration(const char* name, const char* summary,
                         std::function<std::unique_ptr<Device>(const DeviceOptions&)> create,
                         std::function<std::vector<DeviceInfo>()> list);
 };
 
-// For backends: throws InputError for a setting that is not among those that they have.
+// For backends: throws InputError for a setting that is not in `known`.
 void check_settings(const std::string& backend, const DeviceOptions& options, const std::vector<std::string>& known);
 
-// Throws InputError for an unknown backend (with the list), MachineError where it has no device.
+// Throws InputError for an unknown backend (with the list), MachineError if the backend has no device.
 std::unique_ptr<Device> create_device(const std::string& backend, const DeviceOptions& options = {});
 std::vector<std::string> backend_names();
 std::vector<std::pair<std::string, std::string>> backend_summaries();  // name, summary

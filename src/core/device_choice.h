@@ -7,8 +7,8 @@
 
 namespace lampyris {
 
-// A number is a number; anything else is part of a name, in upper or lower case. Nothing: the first one. Throws MachineError, which
-// lists the devices.
+// A number is an index; anything else is a part of a name, in upper or lower case. Empty: the first device. Throws a
+// MachineError that lists the devices.
 size_t choose_device(std::span<const std::string> names, const std::string& wish, const std::string& backend);
 
 }  // namespace lampyris

@@ -1,4 +1,4 @@
-// Only what the scene calls for: the set of effects, each with who asked for it.
+// The set of effects that a scene needs, each with the directive that needs it, so that nothing else is compiled.
 #pragma once
 
 #include "core/kernel_types.h"
@@ -12,14 +12,14 @@ namespace lampyris {
 
 struct EffectRequest {
     uint64_t effect = 0;   // one bit (kernel::EFFECT_*)
-    std::string asked_by;  // "scene.pbrt:12:1 (Material \"dielectric\")"; the first directive that asks
+    std::string asked_by;  // "scene.pbrt:12:1 (Material \"dielectric\")"; the first directive that needs it
 };
 
-// A set computed from the description, not a user's switch.
+// The set is computed from the description; users cannot switch effects.
 class Effects {
  public:
-    // One effect or several. The first one to ask for each is remembered. Where who asks is a function, it is called for new effects
-    // alone: to find a place in a file takes time.
+    // Adds one effect or several. The first directive to need an effect is recorded with it. If `asked_by` is a function, it is
+    // called only for effects that are new, because finding a location in a file takes time.
     template <typename AskedBy>
     void ask(kernel::EffectSet effects, const AskedBy& asked_by) {
         for (kernel::EffectSet left = effects & ~mask_; left != 0; left &= left - 1) {
@@ -45,7 +45,7 @@ struct EffectInfo {
     const char* name;
     const char* cost;
 };
-// Every effect that Lampyris knows, in order of their bits; generated from core/kernel/effects.h.
+// All effects that Lampyris knows, in order of their bits; generated from core/kernel/effects.h.
 const std::vector<EffectInfo>& known_effects();
 
 }  // namespace lampyris

@@ -66,11 +66,11 @@ std::string Sources::excerpt(Location location) const {
     const Source& source = sources_[location.file];
     const size_t offset = std::min<uint64_t>(location.offset, source.text.size());
     size_t start = line_of(source, offset).line_start;
-    // No further than is shown: a line may be as long as its file.
+    // Searched no further than is shown, because a line may be as long as its file.
     const std::string_view text =
         source.text.substr(0, offset + std::min(source.text.size() - offset, 2 * kMaxExcerpt));
     size_t stop = std::min(text.find_first_of("\r\n", offset), text.size());
-    // A window of a long line, with the place inside it and cut between characters.
+    // A window of a long line that contains the location, cut between characters.
     std::string prefix, suffix;
     if (stop - start > kMaxExcerpt && offset - start > kMaxExcerpt * 3 / 4) {
         start = offset - kMaxExcerpt / 2;
@@ -136,7 +136,8 @@ std::vector<std::string> Diagnostics::formatted(const std::vector<Record>& recor
     std::vector<const Record*> order;
     order.reserve(records.size());
     for (const Record& record : records) order.push_back(&record);
-    // Stable: what is wrong with one place is told in the order in which it was found. Without a place: last.
+    // A stable sort: errors at the same location stay in the order in which they were found. Errors without a location come
+    // last.
     std::ranges::stable_sort(order, [](const Record* a, const Record* b) {
         return a->location.file != b->location.file ? a->location.file < b->location.file
                                                     : a->location.offset < b->location.offset;
@@ -184,7 +185,7 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
     constexpr size_t kMaxWord = 64;
     if (word.empty() || word.size() > kMaxWord) return {};
     const std::string* best = nullptr;
-    // At most a third of the letters may differ, so that the guess is one that a reader would have made, too.
+    // At most a third of the letters may differ, so that only guesses are made that a reader would make, too.
     size_t best_distance = 2 * std::max<size_t>(1, word.size() / 3) + 1;
     for (const std::string& candidate : candidates) {
         if (candidate.empty() || candidate.size() > kMaxWord) continue;
@@ -201,7 +202,7 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
 }
 
 std::string list_of(const std::vector<std::string>& candidates) {
-    constexpr size_t kMostListed = 100;  // no list of what Lampyris knows is as long; what a scene defines may be
+    constexpr size_t kMostListed = 100;  // only a scene's own names may be more
     std::string text;
     for (size_t i = 0; i < std::min(candidates.size(), kMostListed); ++i)
         text += (text.empty() ? "" : ", ") + candidates[i];

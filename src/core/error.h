@@ -38,7 +38,7 @@ class MachineError : public Error {
     explicit MachineError(const std::string& message) : Error(ExitCode::kMachineCannot, message) {}
 };
 
-// A place in a source text: a file known to Sources, and a byte offset in it. Line and column are computed when asked for.
+// A location in a source text: a file known to Sources, and a byte offset. Line and column are computed on demand.
 struct Location {
     static constexpr uint32_t kNoFile = 0xffffffffu;
     uint32_t file = kNoFile;
@@ -46,9 +46,9 @@ struct Location {
     bool known() const { return file != kNoFile; }
 };
 
-// The texts that were read, kept so that a Location can be shown as line, column and excerpt.
-// Text is kept by view, with a share of its owner (a mapped file) where one is handed over; otherwise the owner must
-// outlive Sources. Not for several threads at once: places are found by a table that grows as they are asked for.
+// The texts that were read, kept so that a Location can be shown as line, column and excerpt. Texts are kept as views. If an
+// owner (a mapped file) is passed, it is kept alive; otherwise it must outlive Sources. Not thread-safe: lookups extend a table
+// of lines.
 class Sources {
  public:
     uint32_t add(std::string name, std::string_view text, std::shared_ptr<const void> owner = nullptr);
@@ -65,7 +65,7 @@ class Sources {
         Location location) const;  // the line, a newline, and a caret below the place; long lines are cut
 
  private:
-    // What is known of the line in which a block of the text begins: so a place is found by looking at one block.
+    // Where a block of the text starts in terms of lines, so that a lookup only has to scan one block.
     static constexpr uint64_t kBlock = 4096;
     struct BlockStart {
         uint64_t lines_before = 0;
@@ -76,31 +76,31 @@ class Sources {
         std::string owned;
         std::string_view text;
         std::shared_ptr<const void> owner;
-        mutable std::vector<BlockStart> blocks;  // as far as was asked for
+        mutable std::vector<BlockStart> blocks;  // computed as far as needed
     };
-    // The line of an offset: how many come before it, and where it begins.
+    // The line that contains an offset: the number of lines before it, and where it begins.
     static BlockStart line_of(const Source& source, uint64_t offset);
     std::deque<Source> sources_;
 };
 
-// The nearest of `candidates` to `word` by edit distance, as " (did you mean \"x\"?)", or empty where none is near.
+// The nearest of `candidates` to `word` by edit distance, as " (did you mean \"x\"?)"; empty if none is near.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
-// "a, b, c" in the order given; of very many, the first ones and how many more there are.
+// "a, b, c" in the order given; a long list is cut, and the number of further names is given.
 std::string list_of(const std::vector<std::string>& candidates);
-// A piece of input fit to stand in a message: cut when long, without control characters.
+// Input in a form that is safe to show in a message: cut when long, without control characters.
 std::string shown(std::string_view text);
 
 // Collects the errors and warnings of one scene, so that they are reported together, in the order in which a reader of the
-// scene meets their causes: by file (in the order of reading) and place in it, whoever found them first.
+// scene meets their causes: by file (in the order of reading) and location, no matter in which order they were found.
 class Diagnostics {
  public:
     explicit Diagnostics(const Sources& sources) : sources_(&sources) {}
-    // `hint` says what would have been right ("did you mean ...", "valid types are ..."); it ends the message, after a
-    // semicolon unless it starts with a space.
+    // `hint` says what would have been right ("did you mean ...", "valid types are ..."). It is appended to the message after a
+    // semicolon, unless it starts with a space.
     void error(Location location, std::string message, std::string hint = {});
     void warning(Location location, std::string message, std::string hint = {});
-    // A known part of the format that Lampyris does not simulate: an error, or, with skip_unsupported, a warning that is
-    // remembered for the statistics.
+    // Reports a known part of the format that Lampyris does not simulate: as an error, or, with skip_unsupported, as a warning
+    // that is kept for the statistics.
     void unsupported(Location location, std::string what, std::string hint = {});
     const Sources& sources() const { return *sources_; }
     void set_skip_unsupported(bool skip) { skip_unsupported_ = skip; }
@@ -111,9 +111,9 @@ class Diagnostics {
     std::vector<std::string> warnings()
         const;  // formatted, with location; at most kMaxWarnings, and a line if there were more
     const std::vector<std::string>& unsupported_list() const { return skipped_; }  // "what (file:line)"
-    bool full() const { return error_count_ > kMaxKept; }  // nobody will read a further error's text
-    // did_you_mean for names that a scene defines, of which there may be very many: `names` makes the list. Empty where no
-    // one will read it, or where so many names have been compared already that more would take seconds.
+    bool full() const { return error_count_ > kMaxKept; }  // no further error's text will be shown
+    // did_you_mean for names that a scene defines, of which there may be very many; `names` makes the list. Empty if nobody
+    // will read the hint, or if so many names have been compared already that more would take seconds.
     template <typename Names>
     std::string guess(std::string_view word, const Names& names) {
         if (full() || names_compared_ >= kMostNamesCompared) return {};
@@ -124,7 +124,7 @@ class Diagnostics {
     size_t error_count() const { return error_count_; }
     std::vector<std::string> errors() const;  // formatted, the first kMaxShown
     static constexpr size_t kMaxShown = 20;
-    static constexpr size_t kMaxKept = 100;  // errors found later are counted only, wherever they stand
+    static constexpr size_t kMaxKept = 100;  // errors found later are only counted, wherever they are
     static constexpr size_t kMaxWarnings = 200;
 
  private:

@@ -10,10 +10,11 @@
 namespace lampyris {
 namespace {
 
-constexpr uint32_t kReach = 2;             // neighbours are the other pixels of 5 x 5
-constexpr double kTrustedVariance = 0.25;  // of a mean over its square: from there on, the mean itself tells nothing
+constexpr uint32_t kReach = 2;  // neighbours are the other pixels of 5 x 5
+constexpr double kTrustedVariance =
+    0.25;  // of a mean, divided by its square: from here on, the pixel's own mean is ignored
 
-// The share of a sum that the largest 0.1 % of its terms make; 0 where the sum is not known, or none.
+// The share of a sum that comes from the largest 0.1 % of its terms; 0 if the sum is not known, or zero.
 double share_of_largest(std::vector<float> terms) {
     double sum = 0.0, largest = 0.0;
     for (const float term : terms) sum += double(term);
@@ -24,7 +25,7 @@ double share_of_largest(std::vector<float> terms) {
     return largest / sum;
 }
 
-// Sums of pixels: of a column within reach, or of a square.
+// Sums over pixels: of a column of the square, or of the whole square.
 struct Sums {
     std::array<double, 3> radiance{};
     uint32_t pixels = 0, lit = 0;
@@ -44,8 +45,9 @@ struct Sums {
     }
 };
 
-// R^2 + 0.01, by what relMSE divides. A firefly makes a pixel's own mean large together with its variance, so that the error
-// seems small beside it, though the true mean R is not: the less a mean is known, the more its neighbours' stands for it.
+// The denominator of relMSE, R^2 + 0.01. A firefly makes a pixel's own mean large together with its variance, so that the
+// relative error seems small although the true mean R is not large. The less certain the pixel's mean, the more the mean of its
+// neighbours replaces it.
 double denominator(const ChannelEstimate& own, double neighbours) {
     const double mean = std::abs(own.mean);
     double r = mean;
@@ -56,14 +58,14 @@ double denominator(const ChannelEstimate& own, double neighbours) {
     return r * r + 0.01;
 }
 
-// The last rows that were read, as many as a square has.
+// The rows that the current square needs.
 class Rows {
  public:
     Rows(uint32_t width, uint32_t height, const PixelReader& read) : width_(width), height_(height), read_(read) {
         pixels_.resize(size_t(kRows) * width);
         columns_.resize(width);
     }
-    // Makes row y the middle one; to be called for 0, 1, 2, ...
+    // Makes row y the middle one; must be called for 0, 1, 2, ... in order.
     void move_to(uint32_t y) {
         const uint32_t end = std::min(height_, y + kReach + 1);
         for (; read_rows_ < end; ++read_rows_)
@@ -74,7 +76,8 @@ class Rows {
         }
     }
     PixelEstimate& pixel(uint32_t x, uint32_t y) { return pixels_[size_t(y % kRows) * width_ + x]; }
-    // Of the square around pixel x of the middle row y, without that pixel: taken off a sum it would leave its rounding.
+    // The sum over the square around pixel x of the middle row y, without that pixel. (Subtracting the pixel from a complete
+    // sum would leave its rounding error.)
     Sums around(uint32_t x, uint32_t y) {
         Sums sums;
         for (uint32_t i = x - std::min(x, kReach); i < std::min(width_, x + kReach + 1); ++i)

@@ -1,4 +1,4 @@
-// relMSE of a picture that has no reference: what its pixels' own variance predicts. docs/stats.md has the formula.
+// The relMSE of a picture without a reference, as predicted by its pixels' own variance. docs/stats.md has the formula.
 #pragma once
 
 #include <array>
@@ -11,21 +11,21 @@ struct ChannelEstimate {
     double mean = 0.0, variance = 0.0;  // variance of the mean; NaN below two samples
 };
 
-// What is known of a pixel, by channel.
+// The current estimate of a pixel, by channel.
 struct PixelEstimate {
     std::array<ChannelEstimate, 3> radiance;
-    std::array<double, 3> bias_squared{};  // estimated; the mean of many is right, single ones may be negative
-    bool left_out = false;                 // no sample was finite: it counts nowhere
+    std::array<double, 3> bias_squared{};  // estimated; right on average, but single ones may be negative
+    bool left_out = false;                 // no sample was finite: the pixel is excluded from all sums
     bool unknown = false;                  // its variance or bias is beyond the range of a float
     bool sees_surface = false;             // with an albedo above 0
     bool has_light = false;
 };
 
 struct ErrorEstimate {
-    double relmse = 0.0;         // NaN where a pixel has less than two samples, or its error is unknown
-    uint64_t unknown = 0;        // pixels whose error is
+    double relmse = 0.0;         // NaN if a pixel has fewer than two samples, or its error is unknown
+    uint64_t unknown = 0;        // pixels whose error is unknown
     double largest_share = 0.0;  // of relmse, by the 0.1 % of the pixels where it is largest
-    double dark_share = 0.0;     // of the pixels that see a surface: those without light in themselves and around them
+    double dark_share = 0.0;     // of the pixels with a surface (not black): those without light in or around them
 };
 
 using PixelReader = std::function<PixelEstimate(uint32_t x, uint32_t y)>;

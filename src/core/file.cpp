@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
     throw MachineError(fmt::format("cannot write '{}': {}", path, std::strerror(error)));
 }
 
-// Closes on every way out; close() can be the call that reports a full disk, so success asks for it by name.
+// Closes the file on every path. A full disk may only be reported by close(), so the successful path calls it explicitly.
 class Descriptor {
  public:
     explicit Descriptor(int fd) : fd_(fd) {}
@@ -107,7 +107,7 @@ void check_writable(const std::string& path) {
                                      std::strerror(errno)));
     if (!S_ISDIR(info.st_mode))
         throw InputError(fmt::format("cannot write '{}': '{}' is not a folder", path, folder.string()));
-    // access() would answer for the real user; only trying tells what the file system (read-only, quota) really allows.
+    // access() checks the real user's permissions; only an attempt shows what the file system (read-only, quota) really allows.
     const std::string temporary = temporary_beside(target);
     const int fd = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
     if (fd < 0) fail(path, errno);

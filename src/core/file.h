@@ -1,4 +1,4 @@
-// Whole files, written so that a reader never meets half of one.
+// Reading and writing whole files, so that a reader never sees half of one.
 #pragma once
 
 #include <cstddef>
@@ -11,17 +11,17 @@
 
 namespace lampyris {
 
-// Writes a file as a whole: into a temporary file beside it, which is flushed to the disk and then renamed, so that the
-// target is either what it was or complete. A link is followed; what is no regular file (a device, a pipe) is written
-// directly. Throws MachineError that names the file and the system's reason (disk full, no permission, ...).
+// Writes a file as a whole: into a temporary file beside it, which is flushed to the disk and then renamed, so that the target
+// is either unchanged or complete. A link is followed; anything but a regular file (a device, a pipe) is written directly.
+// Throws a MachineError that names the file and the system's reason (disk full, no permission, ...).
 void write_file_atomically(const std::string& path, std::span<const std::byte> bytes);
 void write_file_atomically(const std::string& path, std::string_view text);
 
-// Throws what write_file_atomically would throw for a reason that can be known beforehand (no such folder: InputError;
-// no permission: MachineError), so that an hour of rendering does not end with it. Leaves no trace.
+// Throws what write_file_atomically would throw for reasons that can be known beforehand (no such folder: InputError; no
+// permission: MachineError), so that they do not surface after an hour of rendering. Leaves no trace.
 void check_writable(const std::string& path);
 
-// The names of what lies in the folder of `path`, sorted: for guessing what was meant where there is no such file.
+// The names of the files in the folder of `path`, sorted: for suggestions if there is no such file.
 std::vector<std::string> files_beside(const std::filesystem::path& path);
 
 }  // namespace lampyris

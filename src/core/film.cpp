@@ -18,8 +18,8 @@ namespace {
 
 using Estimate = ChannelEstimate;
 
-// A channel's mean and the variance of that mean. The weights of filter importance sampling are constant but for their sign,
-// so their average takes the place of the weight.
+// A channel's mean and the variance of that mean. With filter importance sampling all weights are equal but for their sign, so
+// their average replaces the individual weights.
 Estimate estimate(double sum, double squares, double weight_sum, double n) {
     if (n < 1.0 || weight_sum == 0.0) return {0.0, std::numeric_limits<double>::quiet_NaN()};
     const double weight = weight_sum / n;
@@ -39,12 +39,12 @@ std::array<Estimate, 3> estimates(const kernel::FilmPixel& p) {
 
 constexpr double kLargestFloat = std::numeric_limits<float>::max();
 
-// As a number of an image, which is finite: NaN, an error that is not known yet, is 0.
+// A finite number for an image: NaN, which is an error that is not known yet, becomes 0.
 float of_image(double value) {
     return std::isnan(value) ? 0.0f : float(std::clamp(value, -kLargestFloat, kLargestFloat));
 }
 
-// |z| that a standard normal variable stays below with the given probability: by bisection on erf.
+// The value that |z| of a standard normal variable stays below with the given probability; by bisection on erf.
 double normal_quantile(double confidence) {
     double low = 0.0, high = 8.0;
     for (int i = 0; i < 60; ++i) {
@@ -60,7 +60,7 @@ Film::Film(Device& device, const Scene& scene, const std::array<int, 4>& crop)
     : window_(crop[0], crop[1], crop[2] - crop[0], crop[3] - crop[1]),
       full_width_(scene.width()),
       full_height_(scene.height()) {
-    // The device's copy, this one, and the image with its channels (14 floats a pixel).
+    // The film's copy on the device, the one here, and the image with its channels (14 floats a pixel).
     const uint64_t needed = uint64_t(pixel_count()) * (2 * sizeof(kernel::FilmPixel) + 14 * sizeof(float));
     if (needed > machine_memory())
         throw MachineError(
@@ -119,7 +119,8 @@ PixelEstimate Film::pixel_estimate(size_t i) const {
     if (!bias_buffer_ || result.left_out) return result;
     const std::array<Estimate, 3> bias = bias_estimates(i);
     for (const Estimate& e : bias) result.unknown |= !std::isfinite(e.mean) || e.variance > kLargestFloat;
-    // The square of a noisy estimate is too large by its variance; what is left may be negative here and there.
+    // The square of a noisy estimate is too large by its variance, on average; the corrected value may be negative in some
+    // pixels.
     for (size_t c = 0; c < 3; ++c) result.bias_squared[c] = bias[c].mean * bias[c].mean - bias[c].variance;
     return result;
 }
@@ -170,7 +171,7 @@ Image Film::image() const {
         const std::array<Estimate, 3> bias = bias_estimates(i);
         for (size_t c = 0; c < 3; ++c) *out++ = of_image(bias[c].mean);
         for (size_t c = 0; c < 3; ++c) {
-            // The true error differs from the estimated bias by the noise of both.
+            // The true error differs from the estimated bias by the noise of the image and that of the bias.
             const double variance = e[c].variance + bias[c].variance;
             const double noise = std::isnan(variance) ? 0.0 : std::sqrt(variance);
             *out++ = of_image(std::abs(bias[c].mean) + z * noise);

@@ -1,4 +1,4 @@
-// The film: what each pixel has added up so far on the device, and the image, error estimate and features made of it.
+// The film: the sums of each pixel's samples on the device, and the image, error estimate and features made of them.
 #pragma once
 
 #include "core/device.h"
@@ -17,14 +17,14 @@ namespace lampyris {
 struct FilmSummary {
     uint64_t samples = 0, rays = 0;
     uint32_t min_samples = 0, max_samples = 0;   // of a pixel
-    uint64_t non_finite = 0;                     // samples left out: not finite, or beyond what the sums hold
+    uint64_t non_finite = 0;                     // samples left out: not finite, or too large for the sums
     std::array<uint32_t, 3> first_non_finite{};  // x, y, pass; meaningful where non_finite > 0
     uint64_t unknown_errors = 0;                 // pixels whose variance or bias is beyond the range of a float
-    // Estimated relMSE: the mean over pixels and channels of (Var(mean) + bias^2) / (R^2 + 0.01), R guessed by core/error_estimate.h.
-    // Samples count as independent, which overstates the error of a stratified sampler. The bias is that of attach_bias, else 0.
-    // NaN below two samples a pixel, and with unknown_errors.
+    // Estimated relMSE: the mean over pixels and channels of (Var(mean) + bias^2) / (R^2 + 0.01), with R estimated by
+    // core/error_estimate.h. Samples are taken as independent, which overstates the error of a stratified sampler. The bias is
+    // that of attach_bias, else 0. NaN if pixels have fewer than two samples, or if there are unknown_errors.
     double estimated_relmse = 0.0;
-    EstimateHealth health;  // whether that can be trusted
+    EstimateHealth health;  // whether the estimate can be trusted
 };
 
 class Film {
@@ -36,16 +36,17 @@ class Film {
     glm::uvec4 window() const { return window_; }           // x0, y0, width, height
     uint32_t pixel_count() const { return window_.z * window_.w; }
 
-    // For integrators that estimate their bias sample by sample: kernel::FilmBias, pixel by pixel. From then on it counts in the
-    // summary's error, and the image has the channels `bias` (of the mean) and `error`: |bias| + z sqrt(variance of both), which the true
-    // error stays below with the given confidence where radiance is smooth (Hachisuka et al. 2010, equation 17).
+    // For integrators that estimate their bias sample by sample: kernel::FilmBias, pixel by pixel. From then on the bias is
+    // part of the summary's error, and the image has the channels `bias` (of the mean) and `error`: |bias| + z sqrt(variance of
+    // both). The true error stays below this with the given confidence where radiance is smooth (Hachisuka et al. 2010,
+    // equation 17).
     void attach_bias(BufferHandle buffer, double confidence);
 
-    void download();  // what the device has added up; the functions below look at the last download
+    void download();  // copies the sums from the device; the functions below use the last download
     FilmSummary summary() const;
     std::vector<float> rgb() const;  // [height][width][3]
-    // R, G, B and the features albedo, normal, depth, variance (of the mean), samples. What is beyond the range of a float is its
-    // largest number.
+    // R, G, B and the features albedo, normal, depth, variance (of the mean), samples. Values beyond the range of a float are
+    // clamped to it.
     Image image() const;
     const std::vector<kernel::FilmPixel>& pixels() const { return pixels_; }
 

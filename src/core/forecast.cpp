@@ -15,22 +15,22 @@ namespace lampyris {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double kFastest = 1.0;  // no integrator here averages anything that falls faster than the mean of samples
+constexpr double kFastest = 1.0;  // no integrator here converges faster than the mean of independent samples
 
-// What is believed before a run has shown anything.
+// Assumptions before a run has shown anything.
 constexpr double kRateSpread = 0.25;  // standard deviation of the exponent around the expected one
 constexpr double kNoise = 0.06;       // of the logarithm of an error
-constexpr double kNoiseWeight = 4.0;  // as many points' worth
-constexpr double kRateDrift = 0.1;    // of the exponent between the history that is fitted and the next halving
+constexpr double kNoiseWeight = 4.0;  // the prior counts as much as this many points
+constexpr double kRateDrift = 0.1;    // of the exponent between the fitted history and the next halving
 constexpr double kTimeSpread = 0.05;  // of the logarithm of a pass's seconds
-constexpr double kWindow = 6.0;       // the passes from 1/6 of all on are fitted: three powers of two, at any time
-constexpr double kStep = 1.18920711;  // 2^(1/4): looks that are closer together tell nothing more
+constexpr double kWindow = 6.0;       // the passes from 1/6 of all on are fitted: about three powers of two
+constexpr double kStep = 1.18920711;  // 2^(1/4): points that are closer together add no information
 constexpr size_t kFewestPoints = 3;
 constexpr uint64_t kFewestPasses = 8;
 constexpr uint64_t kEarlyPasses =
-    16;  // up to there errors fall faster or slower than later: radii and variances settle
+    16;  // before that, errors fall faster or slower than later: radii and variances settle
 
-// 95 % quantile of Student's t: Cornish and Fisher's expansion of it about the normal distribution's.
+// 95 % quantile of Student's t: the Cornish-Fisher expansion about the normal distribution's.
 double t_quantile(double freedom) {
     constexpr double z = 1.6448536;
     constexpr double z3 = z * z * z, z5 = z3 * z * z;
@@ -39,7 +39,7 @@ double t_quantile(double freedom) {
 
 bool known(const ErrorPoint& point) { return std::isfinite(point.error) && point.error > 0.0 && point.passes > 0; }
 
-// The recent history, thinned to equal steps of the logarithm of passes; the last point comes first.
+// The recent history, thinned to equal steps of the logarithm of passes, most recent point first.
 std::vector<ErrorPoint> recent(std::span<const ErrorPoint> history) {
     std::vector<ErrorPoint> points;
     if (history.empty()) return points;
@@ -95,7 +95,7 @@ PassTime pass_time(const std::vector<ErrorPoint>& points) {
     return {seconds, std::sqrt(kTimeSpread * kTimeSpread + variance)};
 }
 
-// How much the error has grown, beside what theory lets it fall, since half of the passes; nothing where that is not known.
+// The growth of the error since half of the passes, relative to the decrease that theory predicts; empty if it is not known.
 std::optional<double> growth(std::span<const ErrorPoint> history, ErrorRate rate) {
     if (history.empty() || !known(history.back())) return {};
     const ErrorPoint& now = history.back();
@@ -117,19 +117,21 @@ ErrorForecast forecast_halving(std::span<const ErrorPoint> history, ErrorRate ra
     const PassTime pass = pass_time(points);
     if (!(pass.seconds > 0.0)) return result;
     const Line line = fit(points, rate.expected);
-    // After passes * e^d the logarithm of the error has fallen by exponent * d, give or take the exponent's spread times d and
-    // the noise of the estimates now and then: the d at which log 2 is within that of it (Fieller's interval).
+    // After passes * e^d, the logarithm of the error has fallen by exponent * d. Its uncertainty is the exponent's spread times
+    // d, plus the noise of the present estimate and of the future one. The interval holds every d for which log 2 is within
+    // that uncertainty (Fieller's interval).
     const double q = line.quantile, s = std::min(line.exponent, kFastest), drop = std::numbers::ln2;
     const double noise = 2.0 * q * q * line.noise_variance;
     const double a = s * s - q * q * line.exponent_variance, c = drop * drop - noise;
     const double root = std::sqrt(std::max(0.0, s * s * drop * drop - a * c));
     const double passes = double(points.front().passes), time_spread = q * pass.log_spread;
     const double falls = s * drop + root;
-    if (!(s > 0.0 && c > 0.0)) return result;  // it rises, or is nothing but noise
-    // While the history that is fitted still has few samples, its estimates grow: the error falls faster than they do.
+    if (!(s > 0.0 && c > 0.0)) return result;  // the error rises, or is nothing but noise
+    // While the fitted history still has few samples, its error estimates tend to grow: the true error falls faster than they
+    // do.
     const double d_fastest = (drop - std::sqrt(noise)) / kFastest;
     const double d_low = points.back().passes < kEarlyPasses ? d_fastest : std::max(c / falls, d_fastest);
-    // The spread of the time of a pass is independent of the number of passes: their logarithms' spreads add as squares.
+    // The time of a pass is independent of the number of passes, so the variances of their logarithms add.
     const auto apart = [&](double from, double to) {
         const double passes_spread = std::log(std::expm1(to) / std::expm1(from));
         return std::sqrt(passes_spread * passes_spread + time_spread * time_spread);

@@ -24,8 +24,8 @@ void render_samples(RenderSession& session, const char* kernel_file, const void*
     const BufferHandle params = device.create_buffer(std::max<size_t>(parameter_bytes, 4), "parameters");
     if (parameter_bytes) params->upload(parameters, parameter_bytes);
     std::vector<NamedBuffer> buffers{{"window", window}, {"film", session.film.buffer()}};
-    if (kernel->declares("params")) buffers.push_back({"params", params});  // a kernel need not read any
-    device.run(*kernel, session.device_scene.get(), buffers, 0, 0);  // so that the session does not time the compiler
+    if (kernel->declares("params")) buffers.push_back({"params", params});  // a kernel need not declare any
+    device.run(*kernel, session.device_scene.get(), buffers, 0, 0);  // compiles, if need be, before the clock starts
     SampleSlices slices(device, session.film);
     while (const uint32_t count = session.next_passes()) {
         slices.run(uint32_t(session.next_pass()), count, [&](uint32_t first, uint32_t samples) {

@@ -1,4 +1,4 @@
-// An integrator is a schedule: a list of device.run(kernel, ...) that knows no backend. It registers itself by name:
+// An integrator is a schedule: a list of device.run(kernel, ...), independent of the backend. It registers itself by name:
 //     class Ao final : public Integrator { public: AoParams params; void render(RenderSession& session) override; };
 //     REGISTER_INTEGRATOR(Ao, AO_PARAMS, "ao", "Ambient occlusion: the share of the sky that each point sees.")
 #pragma once
@@ -19,16 +19,17 @@ class Integrator {
     virtual void render(RenderSession& session) = 0;
     // The struct that `fields` of its registration describe.
     virtual void* parameters() = 0;
-    // Whether it looks photons up: with the structure of session.photon_map.
+    // Whether it uses a photon map: that of session.photon_map.
     virtual bool uses_photon_map() const { return false; }
-    // Whether passes share one set of eye samples (--spp), and --passes alone counts passes.
+    // Whether passes share one set of eye samples, whose number --spp sets; then only --passes limits the passes.
     virtual bool fixes_eye_samples() const { return false; }
-    // How fast theory lets the error fall, with the parameters as they are. Photons in radii that stay as they are leave a bias that
-    // no pass takes away.
+    // How fast the error falls in theory, with the current parameters. With fixed radii, the photons leave a bias that no
+    // number of passes removes.
     virtual ErrorRate error_rate() const {
         return uses_photon_map() ? ErrorRate::of_photons(1.0) : ErrorRate::of_samples();
     }
-    // Error that the variance between passes cannot reveal, in a few words: what all passes share. Empty where there is none.
+    // An error that all passes share, so that the variance between them cannot reveal it, in a few words. Empty if there is
+    // none.
     virtual std::string unseen_error([[maybe_unused]] uint32_t eye_samples) const { return {}; }
 };
 
@@ -56,7 +57,7 @@ struct IntegratorRegistration {
         ::lampyris::IntegratorFactory{&::lampyris::RegisteredIntegrator<Class>::create, \
                                       PARAMETER_FIELDS(decltype(Class::params), LIST)});
 
-// An upload of one struct as a kernel's argument buffer.
+// Uploads one struct as a kernel's argument buffer.
 template <typename T>
 BufferHandle argument_buffer(Device& device, const T& value, const char* name) {
     BufferHandle buffer = device.create_buffer(sizeof(T), name);

@@ -7,7 +7,7 @@
 namespace lampyris {
 namespace {
 
-// As the command line names it.
+// By its name on the command line.
 const IntegratorFactory& require_integrator(const std::string& name) {
     if (!integrators().find(name) && find_pbrt_integrator(name))
         throw InputError(fmt::format("error: unknown integrator \"{}\"; in the place of pbrt-v4's, \"{}\" renders",
@@ -35,7 +35,8 @@ ChosenIntegrator choose_integrator(BuiltScene& built, const PluginChoice& overri
     void* parameters = chosen.integrator->parameters();
     set_defaults(parameters, factory.fields);
     const ParameterList& list = of_scene.parameters;
-    // An integrator that the command line chose takes what it knows of the scene's directive; the rest was meant for another.
+    // If the command line chose the integrator, only the parameters it knows are read from the scene's directive; the others
+    // were meant for another integrator.
     if (from_scene) {
         const std::vector<std::string> notes = integrator_notes(of_scene, built.scene, diagnostics.sources());
         built.scene.notes.insert(built.scene.notes.end(), notes.begin(), notes.end());

@@ -1,4 +1,4 @@
-// Which integrator renders a scene, and with which parameters: the scene's, and in their place the command line's.
+// Which integrator renders a scene, and with which parameters: those of the scene, overridden by those of the command line.
 #pragma once
 
 #include "core/integrator.h"
@@ -11,15 +11,16 @@
 namespace lampyris {
 
 struct ChosenIntegrator {
-    std::string asked;                       // by the scene or the command line; empty: nobody named one
-    std::string name;                        // of what renders
-    std::unique_ptr<Integrator> integrator;  // nothing where the scene's is unknown (told)
+    std::string asked;                       // the name in the scene or on the command line; empty: none was given
+    std::string name;                        // of the integrator that renders
+    std::unique_ptr<Integrator> integrator;  // empty if the scene's is unknown (reported)
     const ParameterFields* fields = nullptr;
-    std::string photon_map = kDefaultPhotonMap;  // of integrators that use one
+    std::string photon_map = kDefaultPhotonMap;  // for integrators that use one
 };
 
-// `override`: a name (empty: the scene's integrator) and settings, which come last. Errors of the scene go to `diagnostics`, what
-// is to be said of its integrator to the notes of `built`; throws InputError for what is wrong with the command line's.
+// `override`: a name (empty: the scene's integrator) and settings, which override the scene's. Errors in the scene are reported
+// to `diagnostics`; remarks about its integrator are added to the notes of `built`. Throws InputError for errors on the command
+// line.
 ChosenIntegrator choose_integrator(BuiltScene& built, const PluginChoice& override, Diagnostics& diagnostics);
 
 }  // namespace lampyris

@@ -19,7 +19,7 @@ struct Build {
     CpuKernelDeclaration declare;
 };
 
-// Function-local statics: registrations run before main, in no order.
+// Function-local statics, because registrations run before main, in no defined order.
 std::multimap<std::string, Build, std::less<>>& builds() {
     static std::multimap<std::string, Build, std::less<>> map;
     return map;

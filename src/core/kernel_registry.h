@@ -13,7 +13,7 @@ namespace lampyris {
 
 enum class CpuTracerKind { embree, bvh2 };
 
-// What a ray found: which primitive. Distance and position are recomputed in shared code, so that backends agree to the bit.
+// The primitive that a ray hit. Distance and position are recomputed in shared code, so that backends agree to the bit.
 struct TraceHit {
     uint32_t instance, geometry, primitive;
 };
@@ -32,7 +32,7 @@ struct KernelBuffer {
     size_t element_bytes = 0;
 };
 
-// The kernel's buffers by binding, and where `declared` is, what is asked of it is noted there instead.
+// The kernel's buffers by binding. If `declared` is set, accesses are recorded there, and no buffer is returned.
 struct KernelBufferTable {
     void* const* pointers = nullptr;
     std::vector<KernelBuffer>* declared = nullptr;
@@ -48,7 +48,7 @@ struct CpuInvocation {
     void* const* kernel_buffers;
     const CpuTracer* tracer;
     uint32_t begin, end;
-    uint32_t* unfinished = nullptr;  // set to nonzero where a kernel reports an unfinished loop
+    uint32_t* unfinished = nullptr;  // set to nonzero if a kernel reports an unfinished loop
 };
 
 using CpuKernelFunction = void (*)(const CpuInvocation&);
@@ -65,20 +65,20 @@ struct KernelText {
     KernelText(const char* file, std::string_view text);
 };
 
-// The text of a registered file ("core/kernel/prelude.h"); nullptr where there is none.
+// The text of a registered file ("core/kernel/prelude.h"); nullptr if there is none.
 const std::string_view* find_kernel_text(std::string_view file);
 std::vector<std::string> kernel_text_files();
 
-// The files of a kernel that is made of several: "a+b" is a, then b. A radiance function, "NAME.radiance.h", is completed by the
-// loop over pixels.
+// The files that make up a kernel: "a+b" is a, then b. A radiance function, "NAME.radiance.h", is followed by the loop over
+// pixels.
 std::vector<std::string_view> kernel_parts(std::string_view file);
 inline constexpr std::string_view kPixelLoop = "core/kernel/pixel_loop.h";
 
-// The C++ build with the fewest effects that has all of `effects`. Throws std::logic_error for an unknown kernel,
-// InputError for a pair of files of two plugins, which no build has put together.
+// The C++ build that includes all of `effects` and the fewest others. Throws std::logic_error for an unknown kernel, and
+// InputError for a pair of files from two plugins, for which there is no build.
 CpuKernelFunction find_cpu_kernel(std::string_view file, CpuTracerKind tracer, uint64_t effects);
 
-// The buffers that a kernel's C++ build declares; nothing where there is no such build.
+// The buffers that a kernel's C++ build declares; empty if there is no such build.
 std::optional<std::vector<KernelBuffer>> find_kernel_buffers(std::string_view file);
 
 }  // namespace lampyris

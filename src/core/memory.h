@@ -1,11 +1,11 @@
-// How much memory there is, so that what cannot fit is refused before the system ends the process.
+// How much memory there is, so that requests that cannot fit are refused before the system kills the process.
 #pragma once
 
 #include <cstdint>
 
 namespace lampyris {
 
-// Bytes of the machine, or of the container that the process runs in where that has a limit.
+// Bytes of the machine, or of the process's container if that has a limit.
 uint64_t machine_memory();
 
 }  // namespace lampyris

@@ -34,7 +34,7 @@ bool parse_number(std::string_view text, T& value) {
     return code == std::errc() && end == text.data() + text.size();
 }
 
-// The number of a choice's name; the number of names where it is none of them.
+// The index of a choice's name; the number of names if there is no such name.
 size_t index_of(const ParameterSpec& spec, std::string_view name) {
     return size_t(std::find(spec.choices.begin(), spec.choices.end(), name) - spec.choices.begin());
 }
@@ -85,7 +85,7 @@ ParameterSpec values(std::string name, ParameterType type, std::string absent, s
 }
 
 bool ParameterSpec::contains(double value) const {
-    // Infinity only where it is the default, as "no limit".
+    // Infinity is only allowed if it is the default, which means "no limit".
     if (!std::isfinite(value) && value != number) return false;
     return (above_minimum ? value > minimum : value >= minimum) && value <= maximum;
 }
@@ -286,7 +286,7 @@ void set_parameter(void* target, const ParameterFields& fields, std::string_view
         good = parse_number(value, whole);
         number = double(whole);
     }
-    // Bounds are numbers of the member's type: 0.1 is not below a bound of 0.1f.
+    // Bounds are rounded to the member's type: 0.1 is not below a bound of 0.1f.
     if (good && field->type == ParameterField::Type::kFloat) number = double(float(number));
     if (!good)
         throw InputError(fmt::format("error: {}: \"{}\" is not {} for \"{}\"", of_what, value,

@@ -25,11 +25,11 @@ struct ParameterSpec {
     std::string name;
     ParameterType type = ParameterType::kFloat;  // kSpectrum: rgb, blackbody or spectrum
     bool array = false;                          // any number of values
-    bool texturable = false;                     // a texture of the same name may stand in for the value
-    bool spectral = false;                       // of a float: a spectrum may stand in for it
+    bool texturable = false;                     // a texture may be given instead of the value
+    bool spectral = false;                       // for floats: a spectrum may be given instead
     bool required = false;
     double number = 0.0;  // default of floats, integers and bools
-    std::string text;     // default of strings; of everything else, what its absence means
+    std::string text;     // default of strings; for all other types, what leaving it out means
     double minimum = -std::numeric_limits<double>::infinity();
     double maximum = std::numeric_limits<double>::infinity();
     bool above_minimum = false;        // the minimum itself is outside
@@ -67,10 +67,10 @@ struct ParameterSpec {
         return std::move(*this);
     }
 
-    bool contains(double value) const;            // in range; NaN is not
+    bool contains(double value) const;            // false for NaN
     std::string type_text() const;                // "float or texture", "string, one of a, b"
-    std::string number_text(double value) const;  // of an integer all digits
-    std::string range_text() const;               // "above 0", "1 to 1024", empty where there is none
+    std::string number_text(double value) const;  // integers with all digits
+    std::string range_text() const;               // "above 0", "1 to 1024"; empty if there is no range
     std::string default_text() const;
 };
 using ParameterSpecs = std::vector<ParameterSpec>;
@@ -79,17 +79,17 @@ ParameterSpec real(std::string name, double default_value, std::string doc);
 ParameterSpec integer(std::string name, int default_value, std::string doc);
 ParameterSpec boolean(std::string name, bool default_value, std::string doc);
 ParameterSpec text(std::string name, std::string default_value, std::string doc);
-// One of the names in braces with which `doc` begins: "{race|priority} who stays".
+// A choice among the names in braces at the start of `doc`: "{race|priority} who stays".
 ParameterSpec choice(std::string name, size_t default_index, std::string_view doc);
-// Tuples, spectra, textures and whole arrays have no default value here: `absent` says what it means to leave it out.
+// Tuples, spectra, textures and whole arrays have no default value here: `absent` says what leaving the parameter out means.
 ParameterSpec value(std::string name, ParameterType type, std::string absent, std::string doc);
 ParameterSpec values(std::string name, ParameterType type, std::string absent, std::string doc);
 
 std::vector<std::string> spec_names(const ParameterSpecs& specs);
 const ParameterSpec* find_spec(const ParameterSpecs& specs, std::string_view name);
 
-// Reads one directive's parameters against its specs. Errors go to the diagnostics, with the default in place of the value.
-// Asking for a name without a spec is a bug (std::logic_error).
+// Reads one directive's parameters against its specs. Errors are reported to the diagnostics, and the default is returned.
+// Reading a name without a spec is a bug (std::logic_error).
 class ParameterReader {
  public:
     ParameterReader(const ParameterSpecs& specs, Entity& entity, Diagnostics& diagnostics);
@@ -102,13 +102,14 @@ class ParameterReader {
     std::vector<float> get_tuple(std::string_view name, size_t count);  // empty when absent or wrong
     std::vector<float> take_floats(std::string_view name);              // whole arrays, moved out
     std::vector<int32_t> take_ints(std::string_view name);
-    const Parameter* find(std::string_view name);    // whatever is there by that name, marked as used
-    Location location(std::string_view name) const;  // of the value, or of the directive where it is absent
+    const Parameter* find(std::string_view name);    // the parameter of that name, of any type; marks it as used
+    Location location(std::string_view name) const;  // of the value, or of the directive if the parameter is absent
 
-    // A message at a parameter (or at the directive, where the parameter is absent).
+    // A message at a parameter (or at the directive, if the parameter is absent).
     void error(std::string_view name, std::string message, std::string hint = {});
     void warning(std::string_view name, std::string message, std::string hint = {});
-    // Call last: what nobody asked for is an error that lists the known names. `kind` is that of the plugin ("shape").
+    // To be called last: a parameter that nobody read is an error, which lists the known names. `kind` is that of the plugin
+    // ("shape").
     void finish(std::string_view kind);
 
     const ParameterSpecs& specs() const { return *specs_; }
@@ -125,8 +126,8 @@ class ParameterReader {
 
 // ---- Parameters of integrators and photon maps: members of a plain struct --------------------------------------------
 
-// One member of a struct declared with PARAMS: an int, uint or float. A uint whose documentation begins with "{a|b|c} " is a choice
-// among these names, and its value the number of one, from 0.
+// One member of a struct declared with PARAMS: an int, uint or float. A uint whose documentation begins with "{a|b|c} " is a
+// choice among these names; its value is the index of the name, from 0.
 struct ParameterField {
     ParameterSpec spec;
     size_t offset = 0;
@@ -159,17 +160,17 @@ parameter_field(const char* name, size_t offset, double default_value, double lo
 ParameterSpecs specs_of(const ParameterFields& fields);
 // Writes every default into the struct.
 void set_defaults(void* target, const ParameterFields& fields);
-// Overwrites what the directive gives. Unknown names are left for the caller's report_unused (an integrator shares its
-// directive with others: see spec_names).
+// Overwrites the members that the directive gives. Unknown names are left to the caller's report_unused (an integrator shares
+// its directive with others: see spec_names).
 void read_parameters(void* target, const ParameterFields& fields, const ParameterList& list, Diagnostics& diagnostics);
-// The same from the command line: one "key=value". Throws InputError for an unknown key, a malformed or excessive value;
+// The same from the command line: one "key=value". Throws InputError for an unknown key, or a malformed or out-of-range value;
 // `of_what` names the plugin in the message ("integrator \"ao\"").
 void set_parameter(void* target, const ParameterFields& fields, std::string_view key, std::string_view value,
                    const std::string& of_what);
-// Every field as it stands, for statistics and metadata: name and value as text.
+// The current value of every field, for statistics and metadata: name and value as text.
 std::vector<std::pair<std::string, std::string>> show_parameters(const void* source, const ParameterFields& fields);
 
-// "name:key=value,key=value" as on the command line and in "string photon_map". Throws InputError where it is malformed.
+// "name:key=value,key=value" as on the command line and in "string photon_map". Throws InputError if it is malformed.
 struct PluginChoice {
     std::string name;
     std::vector<std::pair<std::string, std::string>> settings;

@@ -74,7 +74,7 @@ constexpr PbrtIntegrator kIntegrators[] = {
     {"volpath", "path", "media that absorb are simulated, those that scatter are refused", false, kOfPath},
 };
 
-// The one value of a parameter, as the table writes it.
+// The single value of a parameter, in the table's notation.
 std::string value_text(const Parameter& parameter) {
     return std::visit(
         [](const auto& values) -> std::string {
@@ -127,7 +127,7 @@ std::vector<std::string> take_pbrt_parameters(Entity& integrator, Diagnostics& d
     const PluginInfo* renders = integrators().find_info(rendering_integrator(integrator.type));
     for (const PbrtParameter& parameter : known->parameters) {
         names.emplace_back(parameter.name);
-        // An integrator of pbrt's name may have the parameter itself.
+        // An integrator registered under pbrt's name may have the parameter itself.
         if (renders && find_spec(renders->parameters, parameter.name)) continue;
         if (!parameter.ours.empty()) {
             for (Parameter& given : integrator.parameters.parameters)

@@ -9,7 +9,7 @@ namespace {
 constexpr float kSmallestCell = 1e-15f;
 constexpr float kLargestCell = 1e30f;
 
-// Sebastiano Vigna's splitmix64: one number after the other.
+// Sebastiano Vigna's splitmix64.
 uint64_t next(uint64_t& state) {
     uint64_t x = (state += 0x9e3779b97f4a7c15u);
     x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -27,7 +27,7 @@ kernel::PhotonGrid make_grid(const PhotonSet& photons, float multiple) {
         extent[axis] = std::max(finite(photons.high[axis]) - low[axis], 0.0f);
     }
     const float largest = std::max({extent.x, extent.y, extent.z});
-    // One cell less than there may be: the origin's jitter adds one.
+    // One cell less than the maximum, because the origin's jitter may add one.
     const float least = std::max(largest / float(kernel::GRID_MAX_CELLS - 2), kSmallestCell);
     const float cell = std::clamp(finite(multiple * photons.radius), least, std::max(kLargestCell, least));
 

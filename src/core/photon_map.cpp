@@ -27,7 +27,7 @@ constexpr const char* kClear = "core/kernel/clear.kernel.h";
 constexpr const char* kScanSum = "core/kernel/scan_sum.kernel.h";
 constexpr const char* kScanWrite = "core/kernel/scan_write.kernel.h";
 
-// Passes differ in their number of photons: room for a few more saves an allocation. A multiple of 16, for clear().
+// The number of photons varies from pass to pass: a little more room saves reallocations. A multiple of 16, for clear().
 size_t with_room(size_t bytes) { return (bytes + bytes / 8 + 63) / 16 * 16; }
 
 constexpr uint32_t kScanBlock = 1024;  // SCAN_BLOCK of core/kernel/scan.h
@@ -82,7 +82,7 @@ std::vector<const Kernel*> PhotonMap::gather_kernels(const PhotonConsumer& consu
     std::vector<const Kernel*> kernels;
     for (const std::string& file : gather_files()) {
         std::string path = fmt::format("accel/{}/{}", name(), file);
-        if (!find_kernel_text(path)) path = fmt::format("{}/{}", name(), file);  // outside of this tree
+        if (!find_kernel_text(path)) path = fmt::format("{}/{}", name(), file);  // a map outside of this tree
         kernels.push_back(&compiled(fmt::format("{}+{}", consumer.file, path), consumer.effects));
     }
     return kernels;
@@ -153,7 +153,7 @@ void PhotonMap::run_serially(const std::string& file, uint32_t count) {
 const BufferHandle& PhotonMap::keep(const std::string& name, size_t bytes) {
     BufferHandle& buffer = buffers_[name];
     if (!buffer || buffer->size() < bytes) {
-        buffer.reset();  // before the larger one is made
+        buffer.reset();  // free the old one before allocating the larger one
         buffer = device().create_buffer(with_room(bytes), fmt::format("photon map: {}", name));
     }
     return buffer;

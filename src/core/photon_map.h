@@ -1,8 +1,8 @@
-// A photon map answers queries for the photons within a radius. It is a plugin of its own, usable by any integrator and by
-// the benchmark: build() from photons, then gather() at query points, which hands what was found to a consumer.
+// A photon map finds the photons within a radius of a query point. It is a plugin of its own, usable by any integrator and by
+// the benchmark: build() takes the photons; gather() takes query points, and passes the photons it finds to a consumer.
 //     class SortedGrid : public PhotonMap { public: SortedGridParams params; ... };
 //     REGISTER_PHOTON_MAP(SortedGrid, SORTED_GRID_PARAMS, "sorted_grid", "A hash grid, its photons sorted by cell.")
-// docs/photon-maps.md tells how to write one.
+// docs/photon-maps.md explains how to write one.
 #pragma once
 
 #include "core/device.h"
@@ -25,120 +25,120 @@ namespace lampyris {
 
 struct PhotonMapCapabilities {
     bool exact = false;          // finds every photon in range, once, with weight 1
-    bool stochastic = false;     // finds a random part of them, weighted so that sums are right in expectation
-    bool lossy = false;          // drops photons where its memory does not suffice, and weights the others up: biased
-    bool fixed_order = false;    // hands photons over in an order that depends on nothing but the photons and the seed
-    bool needs_queries = false;  // build() reads the queries: a structure over hit points
-    bool sums_only = false;  // hands consumers sums, not photons: gather_value and gather_sums (core/kernel/gather.h)
-    // Stops early where a consumer wants the nearest only (core/kernel/gather.h: GATHER_SHRINKS).
+    bool stochastic = false;     // finds a random subset of them, weighted so that sums are right in expectation
+    bool lossy = false;          // drops photons if memory does not suffice, and weights the others up: biased
+    bool fixed_order = false;    // passes photons on in an order that depends only on the photons and the seed
+    bool needs_queries = false;  // build() reads the queries: the structure is built over query points
+    bool sums_only = false;      // passes sums on, not photons: gather_value and gather_sums (core/kernel/gather.h)
+    // Stops early if a consumer wants only the nearest photons (core/kernel/gather.h: GATHER_SHRINKS).
     bool k_nearest = false;
-    bool int64_atomics = false, boxes = false;  // what it needs of the device (DeviceFeature)
+    bool int64_atomics = false, boxes = false;  // device features that it needs (DeviceFeature)
 };
 
 // What a map is built from.
 struct PhotonSet {
     BufferHandle photons;  // kernel::PhotonRecord[count], in any order; their keys are unique
     uint32_t count = 0;
-    BufferHandle queries;  // vec4[query_count]: position, radius; for maps that need them, gather() must use the same
+    BufferHandle queries;  // vec4[query_count]: position, radius; only if needs_queries; gather() must get the same
     uint32_t query_count = 0;
     float radius = 0;                 // of the largest query
-    glm::vec3 low{0.0f}, high{0.0f};  // box of the photons: a wrong one costs time, not photons
-    uint32_t seed = 0, pass = 0;      // what is random about the map is a function of both
-    float mean_power = 0;             // of a photon, mean of the channels (roughly; for selection by flux)
+    glm::vec3 low{0.0f}, high{0.0f};  // bounding box of the photons; a wrong one costs time, but loses no photons
+    uint32_t seed = 0, pass = 0;      // all random choices of the map are functions of these two
+    float mean_power = 0;             // of a photon, as the mean of the channels (approximate; for selection by flux)
 };
 
-// Whom the photons that queries find are handed to.
+// The code that receives the photons found by queries.
 struct PhotonConsumer {
     std::string file;                    // "accel/collect/collect.consumer.h"; see core/kernel/gather.h
     uint64_t effects = 0;                // of the scene
-    const DeviceScene* scene = nullptr;  // where the consumer reads it
+    const DeviceScene* scene = nullptr;  // if the consumer reads it
     std::vector<NamedBuffer> buffers;    // that the consumer declares
 };
 
 struct PhotonMapStatistics {
-    // Seconds so far, on the wall clock, and of them within kernels (by timestamps on Vulkan).
+    // Seconds so far: wall-clock time, and the time within kernels (by timestamps on Vulkan).
     double construction_s = 0, gathering_s = 0;
     double construction_kernel_s = 0, gathering_kernel_s = 0;
     uint64_t lost_photons = 0;  // by lossy maps, so far
 };
 
-// Memory traffic per point (photon, or query for maps over hit points) that building cannot avoid, in units that
-// `lampyris bench photon-maps` measures beside it.
+// Memory traffic per point (photon, or query for maps over queries) that building cannot avoid, in units whose cost `lampyris
+// bench photon-maps` measures, too.
 struct ConstructionTraffic {
-    double accesses = 0;     // of a cache line at a random place, reading or writing
-    double atomics = 0;      // at a random place
-    double sorted_bits = 0;  // of keys that are sorted by radix
+    double accesses = 0;     // reads or writes of a cache line at a random address
+    double atomics = 0;      // at random addresses
+    double sorted_bits = 0;  // of keys that are radix-sorted
     bool one_thread = false;
 };
 
-// Invocations of a kernel that handles SPAN batches in each (core/kernel/span.h).
+// Number of invocations of a kernel in which each invocation handles SPAN batches (core/kernel/span.h).
 constexpr uint32_t span_count(uint32_t items) {
-    constexpr uint32_t kSpan = 4;  // SPAN: a divisor of 32, as batch_count() is a multiple
+    constexpr uint32_t kSpan = 4;  // SPAN: must divide 32, because batch_count() is a multiple of 32
     return batch_count(items) / kSpan;
 }
 
 struct BucketLoad {
-    double mean = 0;  // photons in a bucket that has any
+    double mean = 0;  // photons per non-empty bucket
     uint32_t max = 0;
 };
 
 class PhotonMap {
  public:
     virtual ~PhotonMap() = default;
-    virtual PhotonMapCapabilities capabilities() const = 0;  // with the parameters as they are
+    virtual PhotonMapCapabilities capabilities() const = 0;  // with the current parameters
     virtual void* parameters() = 0;                          // the struct that `fields` of its registration describe
 
-    // Compiles what building needs, and the gather kernel for each consumer asked for: so that phases can be timed. Throws
-    // InputError for parameters that exclude each other, MachineError where the device cannot.
+    // Compile the kernels of construction, and the gather kernels of a consumer, so that later timings do not include it. Throw
+    // InputError for parameters that exclude each other, MachineError if the device lacks a feature.
     void open(Device& device);
     void prepare(const PhotonConsumer& consumer);
 
-    // Buffers are kept for the next build, and grow where it needs more. The photons' buffer must live, unchanged, until
-    // the last gather.
+    // Buffers are kept for the next build, and grow as needed. The photons' buffer must stay alive, unchanged, until the last
+    // gather.
     void build(const PhotonSet& photons);
     // For the queries [first, first + count): position, radius (at most the set's, for speed; any is right, but where the map
     // needs_queries).
     void gather(const PhotonConsumer& consumer, const BufferHandle& queries, uint32_t first, uint32_t count);
 
     PhotonMapStatistics statistics() const { return statistics_; }
-    // What building cannot do without; all 0 where that is nothing but reading the photons.
+    // The memory traffic that building cannot avoid; all 0 if building only reads the photons.
     virtual ConstructionTraffic traffic() const { return {}; }
-    // Of the last build; reads it back from the device, so not for every pass. Empty where there are no buckets.
+    // Of the last build. It is read back from the device, so not to be called in every pass. Empty for maps without buckets.
     virtual std::optional<BucketLoad> bucket_load() const { return std::nullopt; }
-    size_t memory_bytes() const;  // of buffers now, without the photons
+    size_t memory_bytes() const;  // of the current buffers, without the photons
 
  protected:
-    virtual std::string name() const = 0;  // of its folder and its gather file
+    virtual std::string name() const = 0;  // also that of its folder and gather file
     virtual void check() const {}          // throws InputError
     virtual void construct(const PhotonSet& photons) = 0;
-    virtual std::vector<std::string> kernels() const = 0;  // of construction, to compile
-    // The files that make gather kernels with the consumer.
+    virtual std::vector<std::string> kernels() const = 0;  // of construction, to be compiled
+    // The map's files that form gather kernels with the consumer.
     virtual std::vector<std::string> gather_files() const { return {name() + ".gather.h"}; }
-    // Runs these kernels: the first over queries, unless a map does it another way.
+    // Runs these kernels: by default the first one, over queries.
     virtual void run_gather(std::span<const Kernel* const> kernels, const PhotonConsumer& consumer,
                             const BufferHandle& queries, uint32_t first, uint32_t count);
     void run_gather_kernel(const Kernel& kernel, const PhotonConsumer& consumer, const BufferHandle& queries,
                            uint32_t first, uint32_t count);
 
     Device& device() const { return *device_; }
-    // Runs a kernel of construction, by its file below the source root. Each buffer that it declares is the one of that name among
-    // `others`, or is kept by that name (`photons`: the set's). So it is for gather kernels, which have `queries` and the
-    // consumer's besides.
+    // Runs a kernel of construction, given as a file below the source root. Each buffer that the kernel declares is the one of
+    // that name in `others`, or else the kept buffer of that name (`photons`: those of the set). The same rule holds for gather
+    // kernels, which also have `queries` and the consumer's buffers.
     void run(const std::string& file, uint32_t count, std::initializer_list<NamedBuffer> others = {});
-    // The same, one invocation after the other.
+    // The same, but the invocations run one after the other.
     void run_serially(const std::string& file, uint32_t count);
-    // A buffer of at least this size, kept between builds by the name that kernels know it by. What it holds is indeterminate.
+    // A buffer of at least this size, kept between builds under its name in kernels. Its contents are indeterminate.
     const BufferHandle& keep(const std::string& name, size_t bytes);
     const BufferHandle& kept(const std::string& name) const { return buffers_.at(name); }
-    void clear(const BufferHandle& buffer, size_t bytes);  // to zero, on the device
+    void clear(const BufferHandle& buffer, size_t bytes);  // sets it to zero, on the device
     // Replaces each of `count` words by the sum of those before it.
     void scan(const BufferHandle& values, uint32_t count);
-    // Device::build_boxes; what it takes counts as the map's memory.
+    // Device::build_boxes; the structure's size counts as the map's memory.
     void build_boxes(const BufferHandle& boxes, uint32_t count) {
         structure_bytes_ = device().build_boxes(boxes, count);
     }
-    // Sorts `count` pairs of words (key, value) by the `bits` lowest bits of the key, stably. `other` is room for as many; returns
-    // which of both holds the result. Kernels that use it name kRadixKernels among theirs.
+    // Sorts `count` pairs of words (key, value) by the lowest `bits` bits of the key, stably. `other` is a second buffer of the
+    // same size; returns the one of the two that holds the result. Maps that use it must list kRadixKernels in kernels().
     BufferHandle radix_sort(const BufferHandle& pairs, const BufferHandle& other, uint32_t count, uint32_t bits);
     static const std::vector<std::string> kRadixKernels;
     template <typename T>
@@ -168,15 +168,15 @@ struct PhotonMapFactory {
 };
 
 Registry<PhotonMapFactory>& photon_maps();
-// What integrators take where nobody says.
+// The map that integrators use by default.
 inline constexpr const char* kDefaultPhotonMap = "sorted_grid";
 
-// The map that "name:key=value,..." describes. Throws InputError.
+// Creates the map that "name:key=value,..." describes. Throws InputError.
 std::unique_ptr<PhotonMap> create_photon_map(std::string_view choice);
-// Its parameters as they stand, as text.
+// The map's current parameters, as text.
 std::vector<std::pair<std::string, std::string>> show_photon_map(std::string_view name, PhotonMap& map);
 
-// Photons made by the host, for tests and benchmarks: core/kernel/photon.h as C++.
+// Photons made on the host, for tests and benchmarks: core/kernel/photon.h compiled as C++.
 kernel::PhotonRecord make_photon(glm::vec3 position, glm::vec3 direction, glm::vec3 power, uint32_t key);
 glm::vec3 direction_of(const kernel::PhotonRecord& photon);
 

@@ -28,7 +28,8 @@ std::string read_abi(const std::string& file) {
     if (!stream) throw InputError(fmt::format("{}: error: cannot read this plugin", file));
     const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
     if (!bytes.starts_with("\177ELF")) throw InputError(fmt::format("{}: error: this is no shared object", file));
-    const std::string mark = std::string(kSymbol) + "=";  // put together here, so that only plugins hold it whole
+    const std::string mark =
+        std::string(kSymbol) + "=";  // assembled here, so that only plugins contain the whole marker
     const size_t at = bytes.find(mark);
     if (at == std::string::npos)
         throw InputError(
@@ -47,7 +48,7 @@ void load_plugin(const std::string& file) {
     if (!fs::exists(file, failed)) throw InputError(fmt::format("{}: error: there is no such plugin file", file));
     if (fs::is_directory(file, failed))
         throw InputError(fmt::format("{}: error: this is a folder; a plugin is a shared object (.so)", file));
-    // dlopen searches the system's folders for a name without a slash.
+    // dlopen searches the system's folders for a name without a slash; hence the full path.
     const std::string path = fs::canonical(file).string();
     static std::set<std::string> loaded;
     if (loaded.contains(path)) return;

@@ -1,4 +1,4 @@
-// Plugins that live in shared objects of their own: what registers itself there joins what is built in. A plugin built
+// Plugins in shared objects of their own: their code registers itself beside the built-in plugins. A plugin that was built
 // against other headers than this library's is refused before any of its code runs; see docs/plugin-guide.md.
 #pragma once
 
@@ -8,18 +8,20 @@
 
 namespace lampyris {
 
-// Loads a shared object made by lampyris_add_plugin. A file that was loaded before is not loaded again. Throws InputError
-// where the file is missing, is no plugin, was built for another Lampyris, cannot be loaded or registers a name twice.
+// Loads a shared object made by lampyris_add_plugin. A file that was loaded before is not loaded again. Throws InputError if
+// the file is missing, is not a plugin, was built for another Lampyris, cannot be loaded or registers a name twice.
 void load_plugin(const std::string& file);
 
-// Loads what a PATH-like list (LAMPYRIS_PLUGIN_PATH) names: files, and folders, of which every *.so in order of name.
+// Loads the entries of a PATH-like list (LAMPYRIS_PLUGIN_PATH): files, and folders, from which every *.so is loaded in order of
+// name.
 // Throws as load_plugin does.
 void load_plugin_path(std::string_view list);
 
-// What a command loads before it looks anything up: LAMPYRIS_PLUGIN_PATH of the environment, then the files of --plugin.
+// What a command loads before any look-up by name: LAMPYRIS_PLUGIN_PATH of the environment, then the files of --plugin.
 void load_plugins(const std::vector<std::string>& files);
 
-// What this library asks of a plugin's `lampyris_plugin_abi`: the version, and a hash of the headers it was built with.
+// The value of `lampyris_plugin_abi` that this library requires: the version, and a hash of the headers that the plugin was
+// built with.
 std::string_view plugin_abi();
 
 }  // namespace lampyris

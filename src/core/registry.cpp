@@ -11,7 +11,7 @@ struct Registrations {
     std::vector<std::string> errors;
 };
 
-// Registration happens before main, in no order: this must exist as soon as someone asks for it.
+// Registrations run before main, in no defined order, so this must be created on first use.
 Registrations& registrations() {
     static Registrations all;
     return all;

@@ -29,25 +29,25 @@ class RegistryBase {
     RegistryBase(const RegistryBase&) = delete;
     RegistryBase& operator=(const RegistryBase&) = delete;
 
-    const std::string& kind() const { return kind_; }    // as in messages and on the command line: "shape"
-    const std::string& title() const { return title_; }  // what such a thing is, one sentence
+    const std::string& kind() const { return kind_; }    // the kind's name in messages and on the command line: "shape"
+    const std::string& title() const { return title_; }  // what a plugin of this kind is, in one sentence
     std::vector<std::string> names() const;
     const PluginInfo* find_info(std::string_view name) const;
     // "unknown shape \"sphre\"", and a hint for Diagnostics with the nearest name and the list.
     std::pair<std::string, std::string> unknown(std::string_view name) const;
 
  protected:
-    bool add_info(PluginInfo info);  // false, and remembered as an error, where the name is taken
+    bool add_info(PluginInfo info);  // false if the name is taken, which is recorded as an error
 
  private:
     std::string kind_, title_;
     std::map<std::string, PluginInfo, std::less<>> infos_;
 };
 
-// Every registry that has entries, by kind.
+// Every registry with entries, by kind.
 std::vector<const RegistryBase*> registries();
-// Two plugins with one name: found while static initializers run, told here. Throws InputError. Call it once everything
-// is loaded, and again after each plugin.
+// Reports two plugins with the same name, which are detected while static initializers run. Throws InputError. To be called
+// once everything is loaded, and again after each plugin.
 void check_registrations();
 
 template <typename Factory>

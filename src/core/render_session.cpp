@@ -33,7 +33,7 @@ uint32_t RenderSession::next_passes() {
     uint64_t count = 1;
     if (seconds_per_pass_ > 0.0)
         count = uint64_t(std::clamp(SampleSlices::kSliceSeconds / seconds_per_pass_, 1.0, 1048576.0));
-    // Twice as many as before at most: the first slices are short, and tell how long a pass takes.
+    // At most twice as many as before: the first slices are short, and show how long a pass takes.
     count = std::min(count, std::max<uint64_t>(1, progress_.passes));
     if (limits_.seconds && seconds_per_pass_ > 0.0) {
         const double left = *limits_.seconds - progress_.wall_s;
@@ -54,7 +54,7 @@ void RenderSession::passes_finished(uint32_t count) {
     progress_.wall_s += seconds;
     seconds_per_pass_ = seconds / count;
     if (limits_.passes && progress_.passes >= *limits_.passes) progress_.finished = true;
-    // The next pass must fit, or an average of half a pass would always be overdrawn.
+    // The next pass must fit, or the limit would be exceeded by half a pass on average.
     if (limits_.seconds && progress_.wall_s + 0.5 * seconds_per_pass_ >= *limits_.seconds) progress_.finished = true;
     if (current_watch().interrupted()) interrupted_ = true;
     const bool look = progress_.finished || interrupted_ || std::has_single_bit(progress_.passes) ||
@@ -83,7 +83,7 @@ RenderEnd RenderSession::ended() const {
 
 TargetState RenderSession::compare_with_target(const FilmSummary& summary) const {
     if (!limits_.target_error) return TargetState::kNone;
-    // Not even who accepts an unstable estimate wants the first look's, which may be that of a black picture.
+    // Even with accept_unstable the first estimate is not used: the picture may still be black.
     if (summary.min_samples < kTrustedSamples) return TargetState::kAbove;
     if (std::isnan(summary.estimated_relmse)) return TargetState::kUnknown;
     if (summary.estimated_relmse > *limits_.target_error) return TargetState::kAbove;

@@ -21,7 +21,7 @@ struct BudgetLimits {
     std::optional<uint64_t> passes;
     std::optional<double> seconds;
     std::optional<double> target_error;  // estimated relMSE
-    bool accept_unstable = false;        // an estimate that cannot be trusted reaches the target, too
+    bool accept_unstable = false;        // the target also counts as reached if the estimate cannot be trusted
 };
 
 // Why a rendering ended: by which limit, or because it was interrupted (core/watch.h).
@@ -32,16 +32,16 @@ enum class TargetState { kNone, kAbove, kUnknown, kBelowButUnstable, kReached };
 // The state of a rendering after some passes; what progress displays and statistics see.
 struct RenderProgress {
     uint64_t passes = 0;
-    double wall_s = 0.0;           // spent rendering: without set-up, and without looking at the film
-    double estimated_error = 0.0;  // estimated relMSE; NaN where it is not known yet
-    ErrorForecast forecast{};      // what halving it takes
-    std::string unstable;          // why the estimate cannot be trusted; empty where nothing speaks against it
+    double wall_s = 0.0;           // time spent rendering: without set-up, and without evaluating the film
+    double estimated_error = 0.0;  // estimated relMSE; NaN if not known yet
+    ErrorForecast forecast{};      // time until it has halved
+    std::string unstable;          // why the estimate cannot be trusted; empty if nothing speaks against it
     uint64_t rays = 0, samples = 0;
-    TargetState target = TargetState::kNone;  // where the estimate is, of BudgetLimits::target_error
+    TargetState target = TargetState::kNone;  // the estimate compared with BudgetLimits::target_error
     bool finished = false;
 };
 
-// What photon mapping did, for the statistics.
+// Results of photon mapping, for the statistics.
 struct PhotonStatistics {
     uint64_t emitted = 0, stored = 0, lost = 0, rays = 0;
     double radius_initial = 0.0, radius_min = 0.0, radius_mean = 0.0,
@@ -62,26 +62,26 @@ class RenderSession {
     Film& film;
     uint32_t seed = 0;
     uint32_t sampler = 0;      // kernel::SAMPLER_*
-    uint32_t max_slice = 0;    // most passes of a slice; 0: no limit
-    uint32_t eye_samples = 1;  // a pixel, of integrators that fix them
-    std::string photon_map;    // NAME[:key=value,...]; of integrators that use one
+    uint32_t max_slice = 0;    // maximum of passes in a slice; 0: no limit
+    uint32_t eye_samples = 1;  // per pixel, for integrators that fix them
+    std::string photon_map;    // NAME[:key=value,...]; for integrators that use one
     PhotonStatistics photons;
-    ErrorRate error_rate = ErrorRate::of_samples();  // what theory says of the integrator
-    std::string unseen_error;  // what no variance of its passes shows; makes the estimate unstable
+    ErrorRate error_rate = ErrorRate::of_samples();  // the integrator's convergence rate in theory
+    std::string unseen_error;  // an error that the variance between passes cannot show; makes the estimate unstable
 
-    // How many passes to run next, beginning with number next_pass(): 0 when the budget is spent or the rendering is
-    // interrupted. Slices last a fraction of a second where passes are that short, and end at powers of two.
+    // How many passes to run next, starting with number next_pass(): 0 when the budget is spent or the rendering is
+    // interrupted. Slices last a fraction of a second (unless one pass takes longer), and end at powers of two.
     uint32_t next_passes();
     // To be called after each slice.
     void passes_finished(uint32_t count);
     // The number of the next pass. It counts from 0, or from `first` (for replaying one pass alone).
     uint64_t next_pass() const { return first_pass_ + progress_.passes; }
     void start_at(uint64_t first) { first_pass_ = first; }
-    // The film's part of the image, and so many samples from `first` on, for kernels.
+    // The film's part of the image, and `samples` samples starting at `first`, for kernels.
     kernel::FilmWindow window(uint32_t first, uint32_t samples) const;
     const RenderProgress& progress() const { return progress_; }
     RenderEnd ended() const;
-    // Cancelled came out of a pass: what is in the film counts, the pass does not.
+    // To be called if a pass threw Cancelled: the film's contents count, the pass does not.
     void pass_was_cancelled() { interrupted_ = true; }
 
     // Seconds of a phase ("eye_pass", "photon_tracing", ...).
@@ -97,7 +97,7 @@ class RenderSession {
     TargetState compare_with_target(const FilmSummary& summary) const;
     BudgetLimits limits_;
     RenderProgress progress_;
-    std::vector<ErrorPoint> history_;  // what each look at the film saw
+    std::vector<ErrorPoint> history_;  // one point per evaluation of the film
     std::map<std::string, double> phases_;
     Clock::time_point slice_start_{};
     uint64_t first_pass_ = 0;

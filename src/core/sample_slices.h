@@ -1,4 +1,4 @@
-// Samples of pixels in slices as long as the device can do at once.
+// Splits samples of pixels into slices of a duration that the device can handle.
 #pragma once
 
 #include "core/film.h"
@@ -14,13 +14,15 @@ class SampleSlices {
  public:
     SampleSlices(Device& device, Film& film);
 
-    // Calls `work(first, count)` for the parts of [first, first + count), which add their samples to the film. A part is twice as
-    // long as the one before at most, and about kSliceSeconds long, so that few pixels with many samples trip no watchdog. Where
-    // the device ends long loops, the film is kept before each part of more than one sample: a part that comes to
-    // UnfinishedError is halved and done again from the film as it was. That of a single sample is passed on.
+    // Calls `work(first, count)` for the parts of [first, first + count), which add their samples to the film. A part is at
+    // most twice as long as the one before, and takes about kSliceSeconds, so that few pixels with many samples trip no
+    // watchdog. If the device ends long loops, the film is saved before each part of more than one sample. If such a part
+    // throws UnfinishedError, the film is restored and the part is repeated in halves. With a single sample, the exception is
+    // passed on.
     void run(uint32_t first, uint32_t count, const std::function<void(uint32_t first, uint32_t count)>& work);
 
-    // Keeps Ctrl-C and the progress line responsive, and the film's download far below a per cent.
+    // Short enough to keep Ctrl-C and the progress line responsive, long enough that downloading the film takes far less than a
+    // per cent.
     static constexpr double kSliceSeconds = 0.4;
 
  private:

@@ -1,4 +1,4 @@
-// Words for people.
+// Wording of messages.
 #pragma once
 
 #include <fmt/format.h>
@@ -9,7 +9,7 @@
 
 namespace lampyris {
 
-// "1 pass", "2 passes"; without a plural, one that ends in s.
+// "1 pass", "2 passes"; the default plural ends in s.
 inline std::string counted(uint64_t count, std::string_view one, std::string_view many = {}) {
     if (count == 1) return fmt::format("1 {}", one);
     return many.empty() ? fmt::format("{} {}s", count, one) : fmt::format("{} {}", count, many);

@@ -2,7 +2,7 @@
 
 namespace lampyris {
 
-// "0.1.0", as CMake's project() has it: the one place where it is written.
+// "0.1.0", from CMake's project(), the only place where it is defined.
 const char* version();
 
 }  // namespace lampyris

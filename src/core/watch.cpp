@@ -5,7 +5,7 @@
 namespace lampyris {
 namespace {
 
-// Passes that take less are finished: an image with the same number of samples everywhere is the better one.
+// Passes that take less time are finished, because an image with the same number of samples everywhere is better.
 constexpr int64_t kPatienceNs = 1'000'000'000;
 
 int64_t now_ns() {

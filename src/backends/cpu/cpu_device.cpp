@@ -31,7 +31,7 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-// Denormals are zero, as on some GPUs; restored afterwards, for the thread may be the caller's.
+// Treats denormals as zero, as some GPUs do. The mode is restored afterwards, because the thread may be the caller's.
 class FlushDenormals {
  public:
     FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | 0x8040u); }
@@ -58,7 +58,7 @@ class CpuBuffer final : public Buffer {
     CpuBuffer(size_t bytes, std::string_view name, std::shared_ptr<MemoryMeter> meter)
         : size_(bytes), meter_(std::move(meter)) {
         meter_->add(bytes, name);
-        // 64 bytes more: a reader may load whole vectors past the end.
+        // 64 bytes more: readers may load whole vectors past the end.
         data_ = static_cast<std::byte*>(::operator new(bytes + 64, std::align_val_t(64), std::nothrow));
         if (!data_) {
             meter_->now -= bytes;
@@ -104,7 +104,7 @@ class CpuDevice final : public Device {
         const std::string name = description();
         choose_device(std::span(&name, 1), options.device, std::string("the backend ") + backend());
         threads_ = options.threads ? options.threads : std::max(1u, std::thread::hardware_concurrency());
-        // TBB starts as many threads as the machine has, whatever an arena asks for, unless it is told.
+        // TBB starts no more threads than the machine has, whatever size an arena has, unless this limit is raised.
         if (threads_ > std::thread::hardware_concurrency())
             more_threads_.emplace(oneapi::tbb::global_control::max_allowed_parallelism, threads_);
         arena_.initialize(int(threads_));
@@ -150,9 +150,9 @@ class CpuDevice final : public Device {
         call.kernel_buffers = pointers.data();
         call.tracer = cpu_scene ? &cpu_scene->tracer() : nullptr;
         call.unfinished = &unfinished;
-        // Small blocks, handed out as threads come free: paths differ in length by far.
+        // Small blocks, handed out as threads become free, because path lengths vary a lot.
         const uint32_t block = std::clamp<uint32_t>(count / (threads_ * 32u), 1u, 256u);
-        const Watch& watch = current_watch();  // of the caller's thread: the others have none
+        const Watch& watch = current_watch();  // of the calling thread; TBB's threads have none
         arena_.execute([&] {
             tbb::parallel_for(
                 tbb::blocked_range<uint64_t>(begin, uint64_t(begin) + count, block),

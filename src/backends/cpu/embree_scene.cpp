@@ -28,7 +28,7 @@ bool count_memory(void* total, ssize_t bytes, bool) {
     return true;
 }
 
-// Embree ends the process (an assertion, in the libraries of Debian) on a ray that is not finite or reaches this far.
+// Embree terminates the process (by an assertion in Debian's libraries) for a ray that is not finite or reaches this far.
 constexpr float kLargestRay = 1.8e18f;
 
 __m128 load3(const float v[3]) {
@@ -77,8 +77,8 @@ EmbreeScene::EmbreeScene(const Scene& scene, void* const* scene_buffers)
 
 CpuTracer EmbreeScene::tracer() { return {this, &EmbreeScene::closest, &EmbreeScene::occluded}; }
 
-// False for rays that meet nothing, as in the other tracers: what they were made from is not finite, and is reported as a
-// sample. Embree's records begin with the origin and tnear, then the direction and time.
+// False for rays that hit nothing, as in the other tracers. Such a ray comes from values that are not finite, and those are
+// reported as a bad sample. Embree's records begin with the origin and tnear, then the direction and time.
 bool EmbreeScene::make_ray(const float origin[3], const float direction[3], float t_max, RTCRay& ray) const {
     const __m128 o = load3(origin), d = load3(direction), limit = _mm_set1_ps(largest_ray_);
     _mm_store_ps(&ray.org_x, o);

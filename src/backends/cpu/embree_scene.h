@@ -63,7 +63,7 @@ class EmbreeScene {
 
     const Scene& scene_;
     void* const* scene_buffers_;
-    float largest_ray_;  // coordinates of origins and directions beyond it are not for Embree
+    float largest_ray_;  // larger coordinates of origins and directions are never passed to Embree
     size_t memory_ = 0;
     EmbreeDevice device_;
     std::vector<std::unique_ptr<UserGeometry>> user_geometries_;

@@ -48,7 +48,7 @@ PrimitiveBounds primitive_bounds(const Scene& scene, uint32_t geometry, uint32_t
             extend({p[0], p[1], p[2]});
         }
     } else {
-        // The full quadric's box: sweeps cut by phimax keep it, which costs a few rays and no correctness.
+        // The full quadric's box. Sweeps cut by phimax use it, too: this costs a few rays, but is correct.
         glm::vec3 low, high;
         const glm::vec4& q = record.params;
         if (record.kind == kernel::GEOMETRY_DISK) {

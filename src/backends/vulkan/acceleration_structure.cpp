@@ -24,7 +24,7 @@ void StructureBuilder::build(AccelerationStructure& into, vk::AccelerationStruct
     if (!into.storage || into.storage->size() < sizes.accelerationStructureSize) {
         const vk::DeviceSize bytes = with_room(sizes.accelerationStructureSize);
         into.structure = nullptr;
-        into.storage.reset();  // before the larger one is made
+        into.storage.reset();  // free the old one before allocating the larger one
         into.storage = std::make_unique<VulkanBuffer>(
             context_, account_, bytes, "an acceleration structure",
             BufferOptions{.staged = staged_,
@@ -35,7 +35,7 @@ void StructureBuilder::build(AccelerationStructure& into, vk::AccelerationStruct
         address_info.accelerationStructure = *into.structure;
         into.address = context_->device.getAccelerationStructureAddressKHR(address_info);
     }
-    constexpr vk::DeviceSize kScratchAlignment = 256;  // the largest that the specification lets a device ask for
+    constexpr vk::DeviceSize kScratchAlignment = 256;  // the largest that a device may require
     if (!scratch_ || scratch_->size() < sizes.buildScratchSize + kScratchAlignment) {
         scratch_.reset();
         scratch_ = std::make_unique<VulkanBuffer>(
@@ -50,7 +50,7 @@ void StructureBuilder::build(AccelerationStructure& into, vk::AccelerationStruct
     context_->submit([&](vk::raii::CommandBuffer& commands) {
         using Stage = vk::PipelineStageFlagBits;
         using Access = vk::AccessFlagBits;
-        // After what wrote the inputs, and after kernels that walked the structure when it held something else.
+        // Waits for the writes to the inputs, and for kernels that still traverse the structure's former contents.
         const vk::MemoryBarrier before(
             Access::eTransferWrite | Access::eHostWrite | Access::eShaderWrite | Access::eAccelerationStructureWriteKHR,
             Access::eAccelerationStructureReadKHR | Access::eAccelerationStructureWriteKHR | Access::eShaderRead);

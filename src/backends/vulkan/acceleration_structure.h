@@ -11,7 +11,7 @@ struct AccelerationStructure {
     vk::DeviceAddress address = 0;
 };
 
-// What a buffer that builds read must have been made for.
+// The usage flags that a buffer must have to be an input of a build.
 constexpr vk::BufferUsageFlags kBuildInputUsage = vk::BufferUsageFlagBits::eShaderDeviceAddress |
                                                   vk::BufferUsageFlagBits::eAccelerationStructureBuildInputReadOnlyKHR;
 
@@ -20,8 +20,8 @@ class StructureBuilder {
     StructureBuilder(std::shared_ptr<Context> context, std::shared_ptr<MemoryAccount> account, bool staged)
         : context_(std::move(context)), account_(std::move(account)), staged_(staged) {}
 
-    // Builds on the device from inputs that earlier submissions wrote. Keeps `into`'s memory and the scratch memory where they
-    // suffice, and leaves room for a few more where not, if `again` says that more builds follow.
+    // Builds on the device from inputs that earlier submissions wrote. Reuses `into`'s memory and the scratch memory if they
+    // suffice. If not, and if `again` says that more builds follow, the new memory has room for slightly larger ones.
     void build(AccelerationStructure& into, vk::AccelerationStructureTypeKHR type,
                const vk::AccelerationStructureGeometryKHR& geometry, uint32_t count, bool again = false);
     std::unique_ptr<VulkanBuffer> input(const void* data, size_t bytes, const char* name) const;
@@ -34,7 +34,7 @@ class StructureBuilder {
     std::unique_ptr<VulkanBuffer> scratch_;
 };
 
-// A top level's instances and a bottom level's boxes (six floats each), which lie at this address.
+// Geometry for a top level's instances, or a bottom level's boxes (six floats each), stored at this address.
 vk::AccelerationStructureGeometryKHR instances_at(vk::DeviceAddress address);
 vk::AccelerationStructureGeometryKHR boxes_at(vk::DeviceAddress address);
 

@@ -9,7 +9,7 @@
 namespace lampyris::vulkan {
 namespace {
 
-// The lowest bit of a number: what all of its multiples are aligned to.
+// The lowest set bit of a number: all multiples of the number are aligned to it.
 uint32_t low_bit(uint32_t x) { return x & (~x + 1); }
 
 class Rewriting {
@@ -59,10 +59,10 @@ class Rewriting {
  private:
     using Words = std::vector<uint32_t>;
     struct Replaced {
-        uint32_t number, pointer_type;  // place among the addresses; of the variable
+        uint32_t number, pointer_type;  // index among the addresses; pointer type of the variable
     };
     struct Pointer {
-        uint32_t alignment, type;  // of what it points to
+        uint32_t alignment, type;  // of the data that it points to
     };
 
     void read() {
@@ -115,7 +115,7 @@ class Rewriting {
         out.insert(out.end(), operands.begin(), operands.end());
     }
 
-    // The type with these operands; a second one of the same kind would not be valid.
+    // The type with these operands; SPIR-V does not allow a second declaration of the same type.
     uint32_t type(spv::Op op, const Words& operands) {
         const auto [found, is_new] = known_.emplace(std::pair(op, operands), next_id_);
         if (is_new) {
@@ -199,7 +199,7 @@ class Rewriting {
         out.insert(out.end(), words, words + count);
     }
 
-    // variable, 0, index, ...: the address plus index times the stride, and the rest from there.
+    // variable, 0, index, ...: the address plus index times the stride, then the rest of the chain from there.
     void point(Words& out, const uint32_t* words, uint32_t count, const Replaced& variable) {
         if (count < 6) throw std::logic_error("a kernel takes a buffer as a whole, which cannot be addressed");
         const uint32_t block = types_.at(variable.pointer_type).second.at(1);
@@ -258,7 +258,7 @@ class Rewriting {
         return {multiple ? std::min(pointer.alignment, low_bit(multiple)) : pointer.alignment, member};
     }
 
-    // A load or store, its memory operands (from word `at`) with an alignment.
+    // A load or store, with an alignment added to its memory operands (from word `at`).
     static void aligned(Words& out, spv::Op op, const uint32_t* words, uint32_t count, uint32_t at,
                         uint32_t alignment) {
         Words operands(words + 1, words + std::min(at, count));
@@ -276,10 +276,10 @@ class Rewriting {
     std::map<uint32_t, uint32_t> sets_, bindings_, strides_, constants_, storage_variables_;
     std::map<std::pair<uint32_t, uint32_t>, uint32_t> offsets_;  // (struct, member)
     std::map<uint32_t, std::pair<spv::Op, Words>> types_;
-    std::map<std::pair<spv::Op, Words>, uint32_t> known_;  // types and constants by what they are
+    std::map<std::pair<spv::Op, Words>, uint32_t> known_;  // types and constants, by their definitions
     uint32_t range_variable_ = 0, range_struct_ = 0, addresses_ = 0;
     std::map<uint32_t, Replaced> replaced_;
-    std::map<uint32_t, Pointer> pointers_;  // into the replaced buffers
+    std::map<uint32_t, Pointer> pointers_;  // pointers into the replaced buffers
     Words globals_;
 };
 

@@ -1,4 +1,4 @@
-// Buffers that are larger than a device binds: a kernel's SPIR-V is changed so that it reads and writes them by their addresses.
+// Buffers that are too large for a device to bind: a kernel's SPIR-V is changed so that it accesses them by their addresses.
 #pragma once
 
 #include "backends/vulkan/spirv.h"
@@ -13,11 +13,11 @@ struct KernelRange {
     uint32_t begin, count;
 };
 
-// What a buffer's address is a multiple of: loads and stores are told so.
+// The alignment of a buffer's address, which is declared for loads and stores.
 constexpr uint32_t kAddressAlignment = 16;
 
-// Replaces the storage buffers of these bindings (all of them used by the module) by buffer device addresses: push constants after
-// KernelRange, in the order of `bindings`. Places are computed with 64 bits, so that a buffer may be of any size. Works on
+// Replaces the storage buffers of these bindings (all of them used by the module) by buffer device addresses: push constants
+// after KernelRange, in the order of `bindings`. Offsets are computed in 64 bits, so that a buffer may have any size. Works on
 // modules before and after the optimizer. The device must have enabled bufferDeviceAddress and shaderInt64.
 Spirv address_buffers(const Spirv& spirv, std::span<const ShaderBinding> bindings);
 

@@ -15,7 +15,7 @@ size_t BoxStructure::build(vk::DeviceAddress boxes, uint32_t count) {
         instance_ = builder_.input(&instance, sizeof instance, "the instance of boxes");
         instanced_ = bottom_.address;
     }
-    // Each time: it holds a copy of the bottom level's bounds.
+    // Rebuilt each time, because it holds a copy of the bottom level's bounds.
     builder_.build(top_, Type::eTopLevel, instances_at(instance_->address()), 1, true);
     return bottom_.storage->size() + top_.storage->size() + instance_->size() + builder_.scratch_bytes();
 }

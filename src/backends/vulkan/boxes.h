@@ -5,12 +5,12 @@
 
 namespace lampyris::vulkan {
 
-// One bottom level of boxes, one top level with it as its only instance. Memory is kept from build to build.
+// One bottom level of boxes, and one top level whose only instance it is. Memory is reused from build to build.
 class BoxStructure {
  public:
     BoxStructure(std::shared_ptr<Context> context, std::shared_ptr<MemoryAccount> account, bool staged)
         : builder_(std::move(context), std::move(account), staged) {}
-    // Of the first `count` boxes at this address. Returns the bytes of all that it holds.
+    // Builds over the first `count` boxes at this address. Returns the bytes of all memory that it holds.
     size_t build(vk::DeviceAddress boxes, uint32_t count);
     vk::AccelerationStructureKHR top_level() const { return *top_.structure; }
 

@@ -61,7 +61,8 @@ std::shared_ptr<const Connection> connect(ValidationLog* log) {
     return connection;
 }
 
-// One for the whole program, and kept: NVIDIA's driver (580) refuses after some twenty instances that came and went.
+// One for the whole program, never destroyed: NVIDIA's driver (580) fails after some twenty instances were created and
+// destroyed.
 std::shared_ptr<const Connection> shared_connection() {
     static const auto* const kept = new std::shared_ptr<const Connection>(connect(nullptr));
     return *kept;
@@ -115,7 +116,7 @@ bool offers_int64_atomics(const vk::raii::PhysicalDevice& device) {
         .shaderBufferInt64Atomics;
 }
 
-// Mesa's llvmpipe did before version 25. The version stands in a text only.
+// Mesa's llvmpipe did before version 25. The version is only available as text.
 bool ends_loops(const vk::raii::PhysicalDevice& device) {
     const auto properties = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>();
     const auto& driver = properties.get<vk::PhysicalDeviceDriverProperties>();
@@ -326,7 +327,7 @@ Staging& Context::staging(Direction direction, size_t bytes) {
                                   read ? vk::BufferUsageFlagBits::eTransferDst : vk::BufferUsageFlagBits::eTransferSrc,
                                   vk::SharingMode::eExclusive});
     const auto needs = made.buffer.getMemoryRequirements();
-    // Reading memory that is not cached is hundreds of times slower: over the bus, word by word.
+    // Reading uncached memory is hundreds of times slower: word by word, over the bus.
     const uint32_t type = memory_type(needs.memoryTypeBits, Memory::eHostVisible | Memory::eHostCoherent,
                                       read ? Memory::eHostCached : vk::MemoryPropertyFlags());
     made.memory = vk::raii::DeviceMemory(device, vk::MemoryAllocateInfo(needs.size, type));
@@ -360,7 +361,7 @@ std::vector<DeviceInfo> list_vulkan_devices() try {
     }
     return list;
 } catch (const vk::Error&) {
-    return {};  // no Vulkan here: no devices
+    return {};  // no Vulkan on this machine: no devices
 }
 
 }  // namespace lampyris::vulkan

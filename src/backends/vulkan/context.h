@@ -1,4 +1,4 @@
-// A Vulkan instance, a device picked from it, one queue; and how errors are told.
+// A Vulkan instance, a device chosen from it, one queue; and the reporting of errors.
 #pragma once
 
 #include "backends/vulkan/validation.h"
@@ -15,21 +15,21 @@ namespace lampyris::vulkan {
 enum class Switch { off, on, automatic };
 Switch read_switch(const DeviceOptions& options, const std::string& key, Switch otherwise);
 
-// What the chosen device can do, of what Lampyris uses.
+// The chosen device's capabilities, as far as Lampyris uses them.
 struct Capabilities {
     bool is_cpu = false, is_integrated = false;
     bool ray_query = false;
-    uint64_t max_boxes = 0;  // of an acceleration structure
+    uint64_t max_boxes = 0;  // in an acceleration structure
     bool int64 = false, int64_atomics = false;
-    bool flushes_denormals = false;  // of floats, when told to
-    bool ends_loops = false;         // after 65,535 iterations, those of loops within it included
+    bool flushes_denormals = false;  // of floats, if requested
+    bool ends_loops = false;         // after 65,535 iterations, counting those of nested loops
     bool timestamps = false;
     double timestamp_ns = 1;  // per tick
-    // Of a buffer that is bound, of an allocation, of what a dispatch is given directly.
+    // Limits of a bound buffer, of an allocation, and of a dispatch's push constants.
     uint64_t max_storage_range = 0, max_allocation = 0, max_push_constants = 0;
-    bool buffer_addresses = false;  // and integers of 64 bits to compute them with
+    bool buffer_addresses = false;  // and 64-bit integers to compute them with
     uint32_t max_storage_buffers = 0, max_groups = 0;
-    bool has_host_visible_local = false;  // memory that both see: map it and copy nothing
+    bool has_host_visible_local = false;  // device-local memory that the host can map, so that nothing need be copied
 };
 
 // The Vulkan library and a connection to it.
@@ -38,7 +38,7 @@ struct Connection {
     vk::raii::Instance instance = nullptr;
 };
 
-// Memory that the host maps, for copies to and from what it does not.
+// Host-mapped memory, for copies to and from memory that the host cannot map.
 struct Staging {
     vk::raii::DeviceMemory memory = nullptr;
     vk::raii::Buffer buffer = nullptr;
@@ -63,11 +63,12 @@ class Context {
     std::string name, driver;
     bool validation = false;
 
-    // The index of a memory type of `allowed` with all of `wanted`, preferably with `liked`; throws MachineError where none.
+    // The index of a memory type of `allowed` that has all of `wanted`, and preferably `liked`; throws MachineError if there is
+    // none.
     uint32_t memory_type(uint32_t allowed, vk::MemoryPropertyFlags wanted, vk::MemoryPropertyFlags liked = {}) const;
-    // Throws MachineError with what the validation layers said since the last call, if anything.
+    // Throws MachineError with the messages of the validation layers since the last call, if there are any.
     void check_validation();
-    // Has `record` record commands, submits them, and waits.
+    // Calls `record` to record commands, submits them, and waits.
     template <typename Record>
     void submit(Record&& record) {
         vk::raii::CommandBuffers buffers(device, {*command_pool, vk::CommandBufferLevel::ePrimary, 1});
@@ -77,7 +78,7 @@ class Context {
         submit_and_wait(*buffers[0]);
     }
     void submit_and_wait(vk::CommandBuffer commands);
-    // Of at least so many bytes; kept for the next copy. Throws vk::Error.
+    // A staging buffer of at least this size, which the next copy reuses. Throws vk::Error.
     enum class Direction { upload, download };
     Staging& staging(Direction direction, size_t bytes);
 

@@ -19,7 +19,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr uint64_t kLeastBinding = 16;  // the flag of unfinished loops stays bound
+constexpr uint64_t kLeastBinding = 16;  // large enough that the flag of unfinished loops stays bound
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -37,7 +37,7 @@ class VulkanDevice final : public Device {
         shader_options_.precise = read_switch(options, "precise", Switch::on) != Switch::off;
         const Switch optimize = read_switch(options, "optimize", Switch::automatic);
         shader_options_.optimize = optimize != Switch::off;
-        // A driver that is a CPU compiles what calls functions in less time than what was inlined before (docs/backends.md).
+        // A CPU driver compiles a shader with function calls in less time than one that was inlined before (docs/backends.md).
         shader_options_.inlined = optimize == Switch::on || (optimize == Switch::automatic && !context_->can.is_cpu);
         shader_options_.local_size = workgroup_size(options);
         specialise_ = read_switch(options, "specialise", Switch::on) != Switch::off;
@@ -48,7 +48,7 @@ class VulkanDevice final : public Device {
             throw MachineError(fmt::format("error: backend.ray_query=on: {} ({}) does not offer VK_KHR_ray_query",
                                            context_->name, context_->driver));
         }
-        // A driver that traces on the CPU is slower at it than the BVH2 in the shader (measured: see docs/backends.md).
+        // A CPU driver's ray tracing is slower than the BVH2 in the shader (measured: see docs/backends.md).
         shader_options_.ray_query = ray_query == Switch::on || (ray_query == Switch::automatic &&
                                                                 context_->can.ray_query && !context_->can.is_cpu);
         const Switch wide_reads = read_switch(options, "wide_reads", Switch::automatic);
@@ -62,7 +62,7 @@ class VulkanDevice final : public Device {
                                                      BufferOptions{.read_back = true});
         unfinished_->fill_zero();
         no_scene_.buffers[kernel::BINDING_UNFINISHED] = unfinished_->binding();
-        // Drivers that are a CPU divide by its instructions, which round as IEEE 754 says.
+        // CPU drivers divide with the CPU's instructions, which round as IEEE 754 specifies.
         const Switch exact = read_switch(options, "exact", Switch::off);
         shader_options_.exact = exact == Switch::on || (exact == Switch::automatic && !context_->can.is_cpu);
         shader_options_.flush_denormals = shader_options_.exact && context_->can.flushes_denormals;
@@ -87,7 +87,7 @@ class VulkanDevice final : public Device {
 
     BufferHandle create_buffer(size_t bytes, std::string_view name) override {
         BufferOptions options{.staged = staged_};
-        if (context_->can.ray_query) options.usage |= kBuildInputUsage;  // it may come to hold boxes
+        if (context_->can.ray_query) options.usage |= kBuildInputUsage;  // it may be used for boxes later
         auto buffer = std::make_shared<VulkanBuffer>(context_, account_, bytes, name, options);
         guarded("clearing a buffer", [&] { buffer->fill_zero(); });
         return buffer;
@@ -114,7 +114,8 @@ class VulkanDevice final : public Device {
         std::shared_ptr<VulkanKernel> kernel;
         guarded(fmt::format("compiling kernel {}", file), [&] {
             kernel = std::make_shared<VulkanKernel>(context_, std::string(file), std::move(shader), options.local_size);
-            // Where some buffers are too large to bind, the first run tells which: nothing is compiled twice.
+            // If some buffers are too large to bind, the first run shows which, and compiles the kernel. Nothing is compiled
+            // twice.
             if (!kernel->uses_acceleration_structure() && account_->too_large_to_bind == 0)
                 kernel->prepare(no_scene_, unfinished_->handle());
         });
@@ -212,7 +213,7 @@ class VulkanDevice final : public Device {
             fmt::format("error: --set backend.workgroup={}: valid are 8, 16, 32, 64, 128 and 256", found->second));
     }
 
-    // Turns Vulkan's errors, and what the validation layers say, into errors that people can act on.
+    // Turns Vulkan's errors, and messages of the validation layers, into errors that users can act on.
     template <typename Work>
     void guarded(const std::string& doing, Work&& work) {
         try {

@@ -12,8 +12,8 @@
 namespace lampyris::vulkan {
 namespace {
 
-constexpr double kDispatchSeconds = 0.1;  // aimed at; watchdogs trip at two seconds and more
-constexpr uint32_t kFirstChunk = 4096;    // indices of the first dispatch, when nothing is known yet
+constexpr double kDispatchSeconds = 0.1;  // target; watchdogs trip at two seconds and more
+constexpr uint32_t kFirstChunk = 4096;    // indices of the first dispatch, whose speed is not known yet
 
 // The buffers of set 1 that the module uses.
 std::vector<KernelBuffer> named_buffers(const Spirv& spirv) {
@@ -63,7 +63,7 @@ KernelPipeline& VulkanKernel::pipeline(const SceneBindings& scene, std::span<con
     if (is_new)
         kept = std::make_unique<KernelPipeline>(context_, file(), shader_.spirv, bindings_, addressed, local_size_);
     kept->bind(given);
-    if (is_new) kept->dispatch(0, 0);  // some drivers (lavapipe) compile at the first dispatch
+    if (is_new) kept->dispatch(0, 0);  // some drivers (lavapipe) compile at the first dispatch, so do it now
     return *kept;
 }
 
@@ -84,7 +84,7 @@ VulkanKernel::Spent VulkanKernel::run(const SceneBindings& scene, std::span<cons
         const double seconds = chosen.dispatch(begin + done, piece);
         spent.kernel_s += seconds;
         done += piece;
-        // Towards kDispatchSeconds; a short last piece says little, so only full ones let the size grow.
+        // Approaches kDispatchSeconds. A short last piece says little about speed, so only full pieces let the size grow.
         const double ratio = std::clamp(kDispatchSeconds / std::max(seconds, 1e-6), 0.1, 8.0);
         if (piece == chunk_ || ratio < 1)
             chunk_ = static_cast<uint32_t>(std::clamp(double(piece) * ratio, double(local_size_), double(most)));
@@ -97,7 +97,7 @@ void VulkanKernel::prepare(const SceneBindings& scene, vk::Buffer anything) cons
     SceneBindings stand_in = scene;
     for (KernelBinding& buffer : stand_in.buffers) buffer = {anything, {}, 0};
     const std::vector<KernelBinding> buffers(64, KernelBinding{anything, {}, 0});
-    pipeline(stand_in, buffers, false);  // whoever asked for the kernel tells
+    pipeline(stand_in, buffers, false);  // the caller has announced the compilation
 }
 
 }  // namespace lampyris::vulkan

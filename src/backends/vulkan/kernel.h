@@ -22,13 +22,14 @@ class VulkanKernel final : public Kernel {
     VulkanKernel(std::shared_ptr<Context> context, const std::string& file, CompiledShader shader, uint32_t local_size);
 
     struct Spent {
-        double compile_s = 0, kernel_s = 0;  // the latter on the device
+        double compile_s = 0, kernel_s = 0;  // kernel_s: on the device
     };
-    // Runs indices [begin, begin + count) in dispatches of about kDispatchSeconds, so that no watchdog trips, until `stop` after
-    // one of them. Which buffers are too large to be bound says which pipeline runs; it is made where there is none yet.
+    // Runs indices [begin, begin + count) in dispatches of about kDispatchSeconds, so that no watchdog trips; ends early if
+    // `stop` returns true after a dispatch. The pipeline depends on which buffers are too large to be bound, and is made on
+    // first use.
     Spent run(const SceneBindings& scene, std::span<const KernelBinding> buffers, uint32_t begin, uint32_t count,
               const std::function<bool()>& stop) const;
-    // Makes the pipeline for buffers that are all bound; `anything` stands in for each.
+    // Makes the pipeline in which all buffers are bound; `anything` is a placeholder for each of them.
     void prepare(const SceneBindings& scene, vk::Buffer anything) const;
 
     size_t spirv_bytes() const { return shader_.spirv.size() * sizeof(uint32_t); }
@@ -37,7 +38,7 @@ class VulkanKernel final : public Kernel {
     bool uses_scene() const;
 
  private:
-    // Compiled, and with its buffers bound; `tell`: of a compilation.
+    // The compiled pipeline, with its buffers bound. `tell`: announce a compilation.
     KernelPipeline& pipeline(const SceneBindings& scene, std::span<const KernelBinding> buffers, bool tell) const;
 
     std::shared_ptr<Context> context_;

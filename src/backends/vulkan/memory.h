@@ -7,7 +7,7 @@ namespace lampyris::vulkan {
 
 class BoxStructure;
 
-// Bytes in use and their largest number, the limit (0: none), and what of it kernels must address.
+// Bytes in use and their peak, the limit (0: none), and the number of buffers that kernels must access by address.
 struct MemoryAccount {
     size_t used = 0, peak = 0;
     size_t too_large_to_bind = 0;  // number of buffers
@@ -16,13 +16,13 @@ struct MemoryAccount {
 
 struct BufferOptions {
     bool staged = false;     // device-local memory that the host does not map
-    bool read_back = false;  // mapped, and above all read by the host
+    bool read_back = false;  // mapped, and mostly read by the host
     vk::BufferUsageFlags usage = vk::BufferUsageFlagBits::eStorageBuffer;
     size_t alignment = 0;  // of the address; 0: whatever the device wants
 };
 
-// What is bound to a binding of a kernel: a buffer, or the structure over the boxes in it, whichever the kernel asks for. A buffer
-// that is too large to be bound has an address.
+// The resource of a kernel's binding: a buffer, or the acceleration structure over its boxes, depending on the kernel's
+// declaration. A buffer that is too large to be bound has an address.
 struct KernelBinding {
     vk::Buffer buffer;
     vk::AccelerationStructureKHR structure;
@@ -44,13 +44,12 @@ class VulkanBuffer final : public Buffer {
     void fill_zero() override;
 
     vk::Buffer handle() const { return *buffer_; }
-    vk::DeviceAddress address()
-        const;  // of buffers made for it (eShaderDeviceAddress), and of those that are too large to bind
+    vk::DeviceAddress address() const;  // for buffers with eShaderDeviceAddress, and those that are too large to bind
     KernelBinding binding() const;
     void* mapped() const { return mapped_; }
     void check_range(size_t bytes, size_t offset) const;  // throws std::logic_error
 
-    std::shared_ptr<BoxStructure> boxes;  // over what the buffer holds, if it holds boxes
+    std::shared_ptr<BoxStructure> boxes;  // over the buffer's contents, if these are boxes
 
  private:
     std::shared_ptr<Context> context_;
@@ -58,7 +57,7 @@ class VulkanBuffer final : public Buffer {
     std::string name_;
     size_t size_ = 0, allocated_ = 0;
     bool too_large_to_bind_ = false;
-    vk::raii::DeviceMemory memory_ = nullptr;  // after the buffer would be freed before it
+    vk::raii::DeviceMemory memory_ = nullptr;  // declared before buffer_, so that it is freed after it
     vk::raii::Buffer buffer_ = nullptr;
     void* mapped_ = nullptr;
 };

@@ -76,7 +76,7 @@ void KernelPipeline::bind(std::span<const KernelBinding> buffers) {
     std::vector<vk::DescriptorBufferInfo> infos;
     std::vector<vk::AccelerationStructureKHR> handles;
     std::vector<vk::WriteDescriptorSetAccelerationStructureKHR> structures;
-    infos.reserve(bindings_.size());  // what the writes point to must stay where it is
+    infos.reserve(bindings_.size());  // the writes point into these, so they must not be reallocated
     handles.reserve(bindings_.size());
     structures.reserve(bindings_.size());
     size_t addresses = 0;

@@ -1,4 +1,4 @@
-// A kernel's pipeline for one choice of which buffers are bound and which are read by their addresses.
+// A kernel's pipeline for one choice of which buffers are bound and which are accessed by address.
 #pragma once
 
 #include "backends/vulkan/memory.h"
@@ -12,18 +12,18 @@ namespace lampyris::vulkan {
 
 constexpr uint32_t kSets = 2;  // of descriptors: the scene's, the kernel's own
 
-// Which of a kernel's bindings are addressed, in their order.
+// For each of a kernel's bindings, in order, whether it is accessed by address.
 using Addressed = std::vector<bool>;
 
 class KernelPipeline {
  public:
-    // Throws MachineError where the device cannot bind so many buffers, or pass so many addresses.
+    // Throws MachineError if the device cannot bind this many buffers, or pass this many addresses.
     KernelPipeline(std::shared_ptr<Context> context, const std::string& file, const Spirv& spirv,
                    std::span<const ShaderBinding> bindings, const Addressed& addressed, uint32_t local_size);
 
-    // What is bound to each of the constructor's bindings.
+    // Binds a resource to each of the constructor's bindings.
     void bind(std::span<const KernelBinding> buffers);
-    // Runs indices [begin, begin + count) at once. Returns the seconds on the device.
+    // Runs indices [begin, begin + count) in one dispatch. Returns the seconds on the device.
     double dispatch(uint32_t begin, uint32_t count);
 
  private:

@@ -9,9 +9,9 @@ struct Scene;
 
 namespace lampyris::vulkan {
 
-// One bottom level per geometry of the scene (triangles, or boxes of quadrics and patches), one top level over them: the
-// geometries of the world, then those of each instance. An entry's custom index is its geometry; its place in the top
-// level's list is not needed: an entry's instance offset (24 bits) holds its instance.
+// One bottom level per geometry of the scene (triangles, or boxes of quadrics and patches), and one top level over them: the
+// geometries of the world, then those of each instance. An entry's custom index is its geometry, and its instance offset (24
+// bits) is its instance, so kernels do not need its index in the top level.
 class AccelerationStructures {
  public:
     AccelerationStructures(std::shared_ptr<Context> context, std::shared_ptr<MemoryAccount> account, const Scene& scene,

@@ -18,7 +18,7 @@ VulkanScene::VulkanScene(std::shared_ptr<Context> context, std::shared_ptr<Memor
     };
     if (ray_query) {
         for (const SceneBuffer& buffer : scene_buffers(scene)) add(buffer);
-        // Nothing reads a BVH then, but kernels bind one.
+        // Nothing reads a BVH in this case, but the kernels' bindings must be filled.
         add({kernel::BINDING_BVH_NODES, nullptr, 0, "BVH nodes"});
         add({kernel::BINDING_BVH_TRIANGLES, nullptr, 0, "BVH primitives"});
         structures_ = std::make_unique<AccelerationStructures>(context, account, scene, staged);

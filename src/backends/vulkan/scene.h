@@ -1,4 +1,4 @@
-// A scene on a Vulkan device: its buffers, and what its rays are traced with.
+// A scene on a Vulkan device: its buffers, and the structures that trace its rays.
 #pragma once
 
 #include "backends/vulkan/kernel.h"
@@ -13,7 +13,7 @@ class AccelerationStructures;
 
 class VulkanScene final : public DeviceScene {
  public:
-    // With ray_query, acceleration structures of the device instead of the BVH2.
+    // With ray_query, uses the device's acceleration structures instead of the BVH2.
     VulkanScene(std::shared_ptr<Context> context, std::shared_ptr<MemoryAccount> account, const Scene& scene,
                 bool staged, bool ray_query, const VulkanBuffer& unfinished);
     ~VulkanScene() override;

@@ -10,7 +10,7 @@
 
 namespace lampyris::vulkan {
 
-// 128 bits of FNV-1a with a final mix: two texts that meet by accident do not happen.
+// 128 bits of FNV-1a with a final mix: wide enough that an accidental collision can be ruled out.
 class ContentHash {
  public:
     void add(std::string_view bytes);
@@ -25,12 +25,12 @@ class ShaderCache {
  public:
     // An empty folder switches the cache off. The folder is made when something is stored.
     explicit ShaderCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
-    // $XDG_CACHE_HOME/lampyris, or ~/.cache/lampyris; empty where neither is known.
+    // $XDG_CACHE_HOME/lampyris, or ~/.cache/lampyris; empty if neither is known.
     static std::filesystem::path default_folder();
 
     std::optional<Spirv> find(const ContentHash& key) const;
-    // Written to a file of its own name and then renamed, so that readers see all of it or nothing. Failing to write is
-    // no error: the cache saves time, nothing else.
+    // Writes to a file with a unique name and then renames it, so that readers see all of it or nothing. Failure to write is
+    // not an error: the cache only saves time.
     void store(const ContentHash& key, const Spirv& spirv) const;
     std::filesystem::path path(const ContentHash& key) const;
 

@@ -19,11 +19,12 @@
 namespace lampyris::vulkan {
 namespace {
 
-// Counts changes of what happens to a shader between its text and its SPIR-V, apart from the libraries' versions.
+// To be raised when the steps from text to SPIR-V change. (The libraries' versions are a separate part of the key.)
 constexpr uint64_t kPipelineVersion = 3;
 
-// glslang folds constants in double, and so keeps PI * PI of literals that no float holds; C++ rounds each literal first.
-// Each literal becomes the decimal of its float, of which products, quotients and sums round to the same float either way.
+// glslang folds constants in double precision, and so computes PI * PI from literals that are not floats; C++ rounds each
+// literal first. Each literal is replaced by the exact decimal value of its float: products, quotients and sums of such values
+// round to the same float either way.
 std::string with_exact_literals(std::string_view text) {
     std::string out;
     out.reserve(text.size() + text.size() / 8);
@@ -115,7 +116,7 @@ struct GlslangProcess {
 };
 
 Spirv compile_glsl(std::string_view kernel_file, const std::string& source, bool keep_uncalled) {
-    static std::mutex mutex;  // glslang's process state
+    static std::mutex mutex;  // protects glslang's process state
     const std::lock_guard lock(mutex);
     static const GlslangProcess process;
     glslang::TShader shader(EShLangCompute);
@@ -139,7 +140,7 @@ Spirv compile_glsl(std::string_view kernel_file, const std::string& source, bool
     }
     Spirv spirv;
     glslang::SpvOptions options;
-    options.disableOptimizer = true;  // it runs after forbid_contraction
+    options.disableOptimizer = true;  // the optimizer runs after forbid_contraction
     glslang::GlslangToSpv(*program.getIntermediate(EShLangCompute), spirv, nullptr, &options);
     return spirv;
 }
@@ -151,7 +152,7 @@ Spirv optimize(std::string_view kernel_file, const Spirv& spirv, const ShaderOpt
         [&log](spv_message_level_t level, const char*, const spv_position_t&, const char* message) {
             if (level <= SPV_MSG_WARNING) log += fmt::format("{}\n", message);
         });
-    // First drop names and what HAS() switches off: inlining it all before dropping it takes nine times as long.
+    // First remove names and the branches that HAS() disables: inlining everything before that takes nine times as long.
     if (!wanted.names) optimizer.RegisterPass(spvtools::CreateStripDebugInfoPass());
     optimizer.RegisterPass(spvtools::CreateCCPPass())
         .RegisterPass(spvtools::CreateDeadBranchElimPass())
@@ -206,7 +207,7 @@ CompiledShader compile_shader(std::string_view kernel_file, const ShaderOptions&
     const std::string source = shader_source(kernel_file, options);
     const ContentHash key = key_of(source, options);
     if (auto found = cache.find(key)) return {std::move(*found), true};
-    Spirv spirv = compile_glsl(kernel_file, source, options.exact);  // nothing calls exact.glsl yet
+    Spirv spirv = compile_glsl(kernel_file, source, options.exact);  // keep exact.glsl, not called yet
     if (options.exact) spirv = exact_arithmetic(spirv, options.flush_denormals);
     if (options.precise) spirv = forbid_contraction(spirv);
     if (options.optimize) spirv = optimize(kernel_file, spirv, options);

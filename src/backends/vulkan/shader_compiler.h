@@ -14,12 +14,12 @@ struct ShaderOptions {
     uint64_t effects = 0;          // the exact mask: code for other effects is compiled out
     bool precise = true;           // forbid contraction
     bool exact = false;            // quotients and square roots by core/kernel/exact.glsl
-    bool flush_denormals = false;  // as the CPU does; only with `exact`
-    bool optimize = true;          // drop what the effects leave out
-    bool inlined = true;           // and inline and simplify the rest, which every driver does once more
+    bool flush_denormals = false;  // as on the CPU; only with `exact`
+    bool optimize = true;          // remove code that the effects disable
+    bool inlined = true;           // and inline and simplify the rest (every driver does that again)
     bool ray_query = false;        // trace with VK_KHR_ray_query instead of the BVH in the shader
-    bool wide_reads = false;       // READ_PAIR by words of 64 bits (prelude.h)
-    bool names = false;            // keep them: where there is no C++ build that says what its buffers are called
+    bool wide_reads = false;       // READ_PAIR reads 64-bit words (prelude.h)
+    bool names = false;            // keep them, for kernels without a C++ build that could tell the buffers' names
     uint32_t local_size = 64;
 };
 

@@ -10,7 +10,7 @@
 namespace lampyris::vulkan {
 namespace {
 
-// Arithmetic to which the SPIR-V specification lets NoContraction apply; all have their result id in word 2.
+// Arithmetic to which NoContraction may apply according to the SPIR-V specification; all have their result id in word 2.
 bool is_float_arithmetic(spv::Op op) {
     switch (op) {
         case spv::OpFNegate:
@@ -97,13 +97,13 @@ std::vector<ShaderBinding> used_bindings(const Spirv& spirv) {
         if (op == spv::OpTypeAccelerationStructureKHR) structures.insert(words[1]);
         if (op == spv::OpFunction) in_function = true;
         if (op == spv::OpVariable && !in_function) variables[words[2]] = words[1];
-        // A literal that happens to equal an id only makes a buffer count as used, which does no harm.
+        // A literal that happens to equal an id only makes an unused buffer count as used, which is harmless.
         if (in_function) used.insert(words + 1, words + count);
     });
     std::vector<ShaderBinding> result;
     for (const auto& [variable, type] : variables) {
         if (!bindings.count(variable) || !used.count(variable)) continue;
-        // A buffer's block is NAMEBlock (prelude.h), and has no name of its own.
+        // A buffer's block is called NAMEBlock (prelude.h); the variable itself has no name.
         const bool structure = structures.count(pointees[type]) != 0;
         std::string name = structure ? names[variable] : names[pointees[type]];
         constexpr std::string_view kBlock = "Block";

@@ -1,4 +1,4 @@
-// What the Khronos validation layers say of our calls (--set backend.validation=on).
+// Messages of the Khronos validation layers about our calls (--set backend.validation=on).
 #pragma once
 
 #include <mutex>
@@ -15,7 +15,7 @@ namespace lampyris::vulkan {
 class ValidationLog {
  public:
     void add(std::string message);
-    std::vector<std::string> take();  // and forgets them
+    std::vector<std::string> take();  // returns the messages, and forgets them
     bool empty() const;
 
  private:
@@ -23,8 +23,8 @@ class ValidationLog {
     std::vector<std::string> messages_;
 };
 
-// Makes a deliberately wrong call on a Vulkan device with validation, and returns what the layers said to it: proof that
-// they are loaded. Empty where they are not.
+// Makes a deliberately wrong call on a Vulkan device with validation, and returns the layers' messages about it, as proof that
+// the layers are loaded. Empty if they are not.
 std::vector<std::string> provoke_validation_message(Device& device);
 
 }  // namespace lampyris::vulkan

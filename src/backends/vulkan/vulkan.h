@@ -1,4 +1,5 @@
-// The one place that includes vulkan_raii.hpp, which costs ten seconds a file: keep it below src/backends/vulkan/.
+// The one header that includes vulkan_raii.hpp, which takes ten seconds to compile per file: include it only in
+// src/backends/vulkan/.
 #pragma once
 
 #include <vulkan/vulkan_raii.hpp>
