@@ -1,4 +1,4 @@
-// lampyris bench photon-maps: what each photon-query structure costs, beside the memory traffic that none can avoid.
+// lampyris bench photon-maps: the cost of each photon-query structure, compared with the memory traffic that it cannot avoid.
 #include "commands/command.h"
 #include "commands/console.h"
 #include "commands/photon_bench.h"
@@ -41,7 +41,7 @@ uint32_t parse_count(const std::string& text) {
     return uint32_t(value);
 }
 
-// The option's commas part structures, and the parameters of one: "a,b:x=1,y=2" is a and b:x=1,y=2.
+// Commas separate structures, and also the parameters of one: "a,b:x=1,y=2" is a and b:x=1,y=2.
 std::vector<std::string> join_parameters(const std::vector<std::string>& pieces) {
     std::vector<std::string> structures;
     for (const std::string& piece : pieces) {
@@ -55,7 +55,7 @@ std::vector<std::string> join_parameters(const std::vector<std::string>& pieces)
     return structures;
 }
 
-// Every structure but the one that nobody waits for.
+// Every structure but the one that is too slow to wait for.
 std::vector<std::string> all_structures() {
     std::vector<std::string> names;
     for (const std::string& name : photon_maps().names())
@@ -92,7 +92,7 @@ int bench(const BenchOptions& options) {
     load_plugins(options.plugins);
     const std::vector<std::string> structures =
         options.structures.empty() ? all_structures() : join_parameters(options.structures);
-    for (const std::string& structure : structures) create_photon_map(structure);  // errors before the work
+    for (const std::string& structure : structures) create_photon_map(structure);  // report errors early
     std::vector<uint32_t> counts;
     for (const std::string& text : options.points) counts.push_back(parse_count(text));
     Json json{{"schema", "lampyris.photon-bench/1"}};
@@ -104,11 +104,11 @@ int bench(const BenchOptions& options) {
         // For structures that one thread builds.
         const std::unique_ptr<Device> one_thread = backend == "vulkan" ? nullptr : create_device(backend, alone);
         for (const uint32_t count : counts) {
-            // On a device that says nothing of threads: as many as a CPU in its place would have.
+            // If the device reports no number of threads: as many as a CPU in its place would have.
             const unsigned threads =
                 device->threads() ? device->threads() : std::max(1u, std::thread::hardware_concurrency());
             const double sort_ns = measure_sort(count, threads, options.settings);
-            // Anew for each row, since machines are not as fast from one second to the next.
+            // Measured again for each row, because a machine's speed varies from one second to the next.
             const auto measure_floors = [&] {
                 PhotonBenchFloors floors;
                 floors.all = measure_floor(*device, count, options.settings);
@@ -139,7 +139,8 @@ int bench(const BenchOptions& options) {
                         rows.push_back(to_json(row));
                         if (!options.json) print_row(row);
                     } catch (const MachineError& error) {
-                        // Some structures need more memory than others, or what a device lacks: the rest goes on.
+                        // Some structures need more memory than others, or a feature that a device lacks: the others are
+                        // measured anyway.
                         tell("{} {} {} {}: {}\n", backend, distribution, count, structure, error.what());
                         failed.push_back({{"structure", structure},
                                           {"backend", backend},

@@ -8,7 +8,7 @@
 //     }
 //     REGISTER_COMMAND(add_hello);
 //
-// `run` is called once the whole command line was understood. It returns the exit code, and throws Error where it fails.
+// `run` is called after the whole command line was parsed. It returns the exit code, and throws Error on failure.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -61,7 +61,7 @@ void print_json(const CompareOptions& options, const Comparison& comparison) {
     json["reference"] = options.reference;
     json["resolution"] = {comparison.width, comparison.height};
     if (!options.crop.empty()) json["crop"] = options.crop;
-    // What is not a number becomes null.
+    // Values that are not finite become null.
     for (const MetricFormula& formula : metric_formulas()) json[formula.key] = metrics.*formula.value;
     json["flip"] = comparison.flip.mean;
     json["flip_kind"] = comparison.hdr ? "HDR" : "LDR";
@@ -83,7 +83,7 @@ int compare(const CompareOptions& options) {
     image.cut_to_window_of(reference);
     Comparison comparison;
     try {
-        check_same_size(image, reference);  // also where the crop would fit both
+        check_same_size(image, reference);  // an error even if the crop would fit both
         if (!options.crop.empty()) {
             const PixelBounds bounds{options.crop[0], options.crop[1], options.crop[2], options.crop[3]};
             image = image.crop(bounds);

@@ -73,7 +73,7 @@ void CompileDisplay::watch() {
                 tell("{}\n", text);
             mentioned_ = true;
         }
-        // The next kernel begins anew: what is waited for is the end of this one, or the time for another line.
+        // The next kernel starts afresh: the thread waits for the end of this one, or for the time of another line.
         const Clock::time_point began = start_;
         const seconds next = !mentioned_ ? kUnmentioned : spent + (terminal_ ? kInPlaceInterval : kLogInterval);
         changed_.wait_until(lock, start_ + next, [&] { return ends_ || kernel_.empty() || start_ != began; });

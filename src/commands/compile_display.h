@@ -1,4 +1,4 @@
-// Says which kernel a driver compiles, and for how long: on lavapipe that may be a minute in which nothing else is heard.
+// Says which kernel a driver is compiling, and for how long: on lavapipe there may be no other output for a minute.
 #pragma once
 
 #include <chrono>
@@ -10,7 +10,7 @@
 
 namespace lampyris {
 
-// What takes less than two seconds is not mentioned.
+// Compilations of less than two seconds are not mentioned.
 class CompileDisplay {
  public:
     explicit CompileDisplay(bool quiet);
@@ -27,7 +27,7 @@ class CompileDisplay {
     const bool quiet_, terminal_;
     std::mutex mutex_;
     std::condition_variable changed_;
-    std::string kernel_;  // empty: none is compiled
+    std::string kernel_;  // empty: no kernel is being compiled
     Clock::time_point start_{};
     bool mentioned_ = false, ends_ = false;
     std::thread thread_;

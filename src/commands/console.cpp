@@ -48,7 +48,7 @@ void say(std::string_view text, bool waits, bool in_place) {
 
 void prepare_console() {
     std::signal(SIGPIPE, SIG_IGN);
-    // Opened the wrong way, so that what is written there is not thought to have arrived.
+    // Opened in the wrong mode, so that writes there fail instead of seeming to succeed.
     for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
         if (::fcntl(fd, F_GETFD) < 0 && errno == EBADF) ::open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY);
 }

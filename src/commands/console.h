@@ -1,6 +1,6 @@
-// What commands say on standard error and standard output. Neither may be there: closed, full, a terminal that went away, a pipe
-// that nobody reads. Saying something then fails silently: no message decides whether an image is written. Whether standard output
-// took what was meant for it is asked once, at the program's end.
+// Output of commands on standard error and standard output. Either may be unusable: closed, full, a terminal that is gone, a
+// pipe that nobody reads. A message then fails silently, because no message decides whether an image is written. Errors of
+// standard output are checked once, at the program's end.
 #pragma once
 
 #include <fmt/format.h>
@@ -10,13 +10,13 @@
 
 namespace lampyris {
 
-// Before anything is opened: a file must not become standard error because that was closed. A broken pipe becomes an error of the
-// call that writes.
+// To be called before anything is opened: if standard error is closed, a file must not get its descriptor. A broken pipe
+// becomes an error of the call that writes.
 void prepare_console();
 
-// On standard error. Dropped where it would have to wait for a reader.
+// On standard error. Dropped if it would have to wait for a reader.
 void tell_text(std::string_view text);
-// The same, but it waits: the program has nothing else to do.
+// The same, but it waits, because the program has nothing else to do.
 void tell_last(std::string_view text);
 // A line that the next one replaces, on a terminal.
 void tell_in_place(std::string_view text);

@@ -1,4 +1,4 @@
-// lampyris describe SCENE: what the scene calls for, who asks for it, and what it costs.
+// lampyris describe SCENE: the effects that the scene needs, the directives that need them, and their cost.
 #include "commands/command.h"
 #include "commands/console.h"
 #include "core/error.h"

@@ -21,7 +21,8 @@ namespace {
 
 enum class State { kNothingDone, kImageBegun, kEnding };
 
-// The handler may do next to nothing: it wakes a thread, which may do all, also while the others are in a driver's compiler.
+// A signal handler may do almost nothing. It wakes a thread, which may do anything, even while the others are in a driver's
+// compiler.
 int wake[2] = {-1, -1};
 std::atomic<State> state{State::kNothingDone};
 std::mutex mutex;
@@ -81,7 +82,7 @@ bool is_ignored(int signal) {
 InterruptWatch::InterruptWatch(std::vector<std::string> names, Watch& watch_of_rendering) {
     set_outputs(std::move(names));
     rendering = &watch_of_rendering;
-    if (::pipe2(wake, O_CLOEXEC) != 0) return;  // signals then do what they do without us
+    if (::pipe2(wake, O_CLOEXEC) != 0) return;  // if this fails, signals have their default effect
     watcher = std::thread(watch);
     std::signal(SIGINT, &on_interrupt);
     std::signal(SIGTERM, &on_interrupt);

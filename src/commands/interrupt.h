@@ -8,9 +8,9 @@
 
 namespace lampyris {
 
-// While it lives, a signal ends the program at once, whatever it is doing, as long as there is nothing to write: exit code 130, and
-// an older image stays as it was. Once there is something, the first signal asks the rendering to end, and what is done is
-// written; the second one ends the program.
+// During its lifetime, a signal ends the program at once, whatever it is doing, as long as there is nothing to write: the exit
+// code is 130, and an older image stays as it was. Once there is something to write, the first signal requests the end of the
+// rendering, and the finished part is written; a second signal ends the program at once.
 class InterruptWatch {
  public:
     InterruptWatch(std::vector<std::string> outputs, Watch& rendering);
@@ -19,7 +19,7 @@ class InterruptWatch {
     InterruptWatch& operator=(const InterruptWatch&) = delete;
 
     void set_outputs(std::vector<std::string> outputs);
-    // From now on there is something to write.
+    // From now on there is an image to write.
     void image_begins();
 };
 

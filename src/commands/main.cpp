@@ -1,4 +1,4 @@
-// The lampyris program: finds the subcommand, and turns what it throws into a message and an exit code.
+// The lampyris program: finds the subcommand, and turns exceptions into a message and an exit code.
 #include "commands/command.h"
 #include "commands/console.h"
 #include "commands/foreign_words.h"
@@ -20,7 +20,7 @@
 namespace lampyris {
 
 std::vector<Command>& commands() {
-    static std::vector<Command> list;  // a function's: commands register before main, in an order that is not defined
+    static std::vector<Command> list;  // function-local, because commands register before main, in no defined order
     return list;
 }
 
@@ -37,7 +37,7 @@ void check_command_name(const CLI::App& app, int argc, char** argv) {
                                  did_you_mean(argv[1], names), list_of(names)));
 }
 
-// What an option that nobody knows was meant to be: another renderer's word, or one that is near.
+// A suggestion for an unknown option: it is another renderer's name, or similar to one of ours.
 std::string near_option(const CLI::App& app) {
     for (const std::string& text : app.remaining(true)) {
         if (const std::string advice = advice_on_option(text.substr(0, text.find('='))); !advice.empty()) return advice;
@@ -77,7 +77,7 @@ int run_command_line(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        // Help and version are no errors; every real one is a wrong argument.
+        // Help and version requests are not errors; every other exception here is a wrong argument.
         if (error.get_exit_code() == 0) return app.exit(error);
         throw InputError(
             fmt::format("lampyris: error: {}{}; --help lists what there is", error.what(), near_option(app)));
@@ -91,7 +91,7 @@ int run_command_line(int argc, char** argv) {
 
 int report(const std::string& message, ExitCode code) {
     std::fflush(stdout);
-    // What libraries and files have to say does not know that it is one.
+    // Messages of libraries and of the file system do not say that they are errors.
     const bool says_so = message.find("error: ") != std::string::npos;
     tell_last(fmt::format("{}{}\n", says_so ? "" : "lampyris: error: ", message));
     return int(code);
@@ -112,7 +112,7 @@ int main(int argc, char** argv) {
     } catch (const Error& error) {
         return report(error.what(), error.code());
     } catch (const std::system_error& error) {
-        // What commands print by fmt::print throws where it does not arrive.
+        // fmt::print throws if the output cannot be written.
         if (std::ferror(stdout) == 0) return report(unexpected(error), ExitCode::kMachineCannot);
         return report(fmt::format("cannot write to standard output: {}", error.code().message()),
                       ExitCode::kMachineCannot);

@@ -27,7 +27,7 @@ struct CollectResult {  // of accel/collect/collect.layout.h
 // The median of at least three runs' seconds.
 double median_seconds(const PhotonBenchSettings& settings, const std::function<void()>& work) {
     using Clock = std::chrono::steady_clock;
-    work();  // memory, caches, compilers that wait for the first dispatch
+    work();  // warm-up: memory, caches, compilers that wait for the first dispatch
     std::vector<double> times;
     double sum = 0;
     while (times.size() < 3 || sum < settings.seconds) {
@@ -42,7 +42,7 @@ double median_seconds(const PhotonBenchSettings& settings, const std::function<v
 
 using SortItem = std::pair<uint32_t, uint32_t>;  // key, index
 
-// Radix sort, eight bits a time, of the same number of items on each thread: what threads would have to say to each other is left out.
+// Radix sort, eight bits at a time, of the same number of items on each thread; communication between threads is not included.
 void radix_sort(std::span<SortItem> items, std::span<SortItem> other) {
     for (unsigned shift = 0; shift < 32; shift += 8) {
         std::array<size_t, 257> starts{};
@@ -68,8 +68,8 @@ class Points {
         const glm::vec3 centre = centres_[size_t(u.x * float(centres_.size())) % centres_.size()];
         return centre + glm::vec3(normal(random_), normal(random_), normal(random_));
     }
-    // The radius within which a query finds `found` of `count` photons, on average (of clusters: where queries lie as the
-    // photons do, the mean density is that of a Gaussian of twice the variance).
+    // The radius within which a query finds `found` of `count` photons, on average. (For clusters: queries have the photons'
+    // distribution, so the mean density is that of a Gaussian of twice the variance.)
     float radius(double found, uint32_t count) const {
         const double pi = glm::pi<double>();
         if (distribution_ == "planar") return float(std::sqrt(found / (pi * count)));

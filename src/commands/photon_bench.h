@@ -14,20 +14,20 @@ namespace lampyris {
 struct PhotonBenchSettings {
     uint32_t queries = 100'000;
     double found = 10;     // photons in range of a query, on average
-    double seconds = 0.2;  // a measurement is repeated for so long, three times at least; the median counts
+    double seconds = 0.2;  // a measurement is repeated for this long, at least three times; the median counts
 };
 
-// Nanoseconds per point of work that no structure does without: a record of 16 bytes written to, and a counter incremented at, a
-// random place among as many as there are points; and of a radix sort of 32-bit keys with their indices.
+// Nanoseconds per point of work that no structure can avoid: writing a record of 16 bytes to, and incrementing a counter at, a
+// random address among as many as there are points; and a radix sort of 32-bit keys with their indices.
 struct PhotonBenchFloor {
     double scatter_ns = 0, atomic_ns = 0, sort_ns = 0;
-    // Of what a structure cannot avoid.
+    // For the traffic that a structure cannot avoid.
     double of(const ConstructionTraffic& traffic) const;
 };
 struct PhotonBenchFloors {
-    PhotonBenchFloor all, one_thread;  // with all of a device's threads; with one, where it has threads
+    PhotonBenchFloor all, one_thread;  // with all of a device's threads; with one, if it has threads at all
 };
-// All but the sort, which is no device's.
+// All but the sort, which does not run on the device.
 PhotonBenchFloor measure_floor(Device& device, uint32_t points, const PhotonBenchSettings& settings);
 double measure_sort(uint32_t points, unsigned threads, const PhotonBenchSettings& settings);
 

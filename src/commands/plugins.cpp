@@ -88,7 +88,7 @@ void print_kind(const RegistryBase& registry) {
         fmt::print("    {:<{}}  {}\n", name, width, registry.find_info(name)->summary);
 }
 
-// In a table's cell, a bar would end the cell.
+// A bar would end the table's cell.
 std::string cell(std::string text) {
     for (size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.replace(at, 1, "\\|");
     return text;
@@ -111,7 +111,7 @@ void print_markdown(const std::vector<const RegistryBase*>& kinds) {
     }
 }
 
-// What reads a scene's Integrator directive, as a page.
+// How a scene's Integrator directive is read, as a page.
 void print_pbrt_integrators() {
     fmt::print(
         "\n## Integrators of pbrt-v4\n\nWhat renders where a scene names one of them. The parameters of pbrt-v4 are "
@@ -133,7 +133,7 @@ void print_pbrt_integrators() {
     }
 }
 
-// What another renderer calls so, or the kinds that do have the name.
+// Another renderer's word for it, or the kinds that do have the name.
 std::string advice(const PluginsOptions& options) {
     if (const std::string foreign = advice_on_plugin(options.kind, options.name); !foreign.empty()) return foreign;
     const std::string& name = options.name.empty() ? options.kind : options.name;

@@ -28,7 +28,7 @@ std::string ProgressDisplay::error_text(const RenderProgress& progress) {
     const ErrorForecast& forecast = progress.forecast;
     const double percent = 100.0 * ErrorForecast::kConfidence;
     const std::string error = fmt::format("estimated relMSE {:.2e}, ", progress.estimated_error);
-    // An end as far away as that tells no more than that there may be none.
+    // An upper bound this far away means no more than that there may be none.
     constexpr double kFar = 100.0;  // times what was spent so far
     if (forecast.high_s < kFar * progress.wall_s)
         return error + fmt::format("halving takes {} to {} more ({:.0f} %)", duration_text(forecast.low_s),
@@ -43,7 +43,7 @@ double ProgressDisplay::share_done(const RenderProgress& progress) const {
     if (limits_.passes)
         share = std::max(share, double(progress.passes) / double(std::max<uint64_t>(1, *limits_.passes)));
     if (limits_.seconds) share = std::max(share, progress.wall_s / *limits_.seconds);
-    // How long an estimate stays unstable, nobody knows.
+    // Nobody can predict how long an estimate stays unstable.
     const bool counts = progress.unstable.empty() || limits_.accept_unstable;
     if (limits_.target_error && progress.estimated_error > 0.0 && counts)
         share = std::max(share, *limits_.target_error / progress.estimated_error);
@@ -64,7 +64,7 @@ std::string ProgressDisplay::target_text(const RenderProgress& progress) {
     return {};
 }
 
-// Rendering that goes on past its target says so once; where nothing else ends it, even if it is to be quiet.
+// Says once that rendering goes on past its target; if nothing else ends it, even with --quiet.
 void ProgressDisplay::note_unstable_target(const RenderProgress& progress) {
     const bool endless = !limits_.passes && !limits_.seconds;
     const bool unknown = progress.target == TargetState::kUnknown;

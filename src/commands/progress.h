@@ -1,4 +1,4 @@
-// How a rendering tells where it is: one line that is redrawn on a terminal, plain lines elsewhere, nothing when quiet.
+// How a rendering reports its progress: one line that is redrawn on a terminal, plain lines elsewhere, nothing when quiet.
 #pragma once
 
 #include "core/render_session.h"

@@ -1,4 +1,4 @@
-// lampyris render: a scene in, images and their cost out.
+// lampyris render: reads a scene, writes images and their cost.
 #include "commands/command.h"
 #include "commands/compile_display.h"
 #include "commands/console.h"
@@ -56,7 +56,7 @@ void print_summary(const RunRecord& run, const std::vector<std::string>& outputs
     for (const std::string& output : outputs) print("wrote {}\n", output);
 }
 
-// One sample of one pixel, alone: for debugging, and for comparing backends.
+// One sample of one pixel: for debugging, and for comparing backends.
 void print_replay(const RenderOutcome& outcome, const std::array<int, 3>& replay) {
     const kernel::FilmPixel& p = outcome.pixels[0];
     const nlohmann::ordered_json json = {{"schema", "lampyris.replay/1"},
@@ -73,7 +73,7 @@ void print_replay(const RenderOutcome& outcome, const std::array<int, 3>& replay
     print("{}\n", json.dump(2));
 }
 
-// What the library has to say, on the console; Ctrl-C, to the library.
+// Shows the library's messages on the console, and passes Ctrl-C to the library.
 class ConsoleObserver final : public RenderObserver {
  public:
     explicit ConsoleObserver(const RenderOptions& options)

@@ -10,9 +10,8 @@
 namespace lampyris {
 namespace {
 
-constexpr uint32_t kReach = 2;  // neighbours are the other pixels of 5 x 5
-constexpr double kTrustedVariance =
-    0.25;  // of a mean, divided by its square: from here on, the pixel's own mean is ignored
+constexpr uint32_t kReach = 2;             // neighbours are the other pixels of 5 x 5
+constexpr double kTrustedVariance = 0.25;  // of a mean over its square: from here on, the mean itself is ignored
 
 // The share of a sum that comes from the largest 0.1 % of its terms; 0 if the sum is not known, or zero.
 double share_of_largest(std::vector<float> terms) {

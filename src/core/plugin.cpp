@@ -28,8 +28,7 @@ std::string read_abi(const std::string& file) {
     if (!stream) throw InputError(fmt::format("{}: error: cannot read this plugin", file));
     const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
     if (!bytes.starts_with("\177ELF")) throw InputError(fmt::format("{}: error: this is no shared object", file));
-    const std::string mark =
-        std::string(kSymbol) + "=";  // assembled here, so that only plugins contain the whole marker
+    const std::string mark = std::string(kSymbol) + "=";  // put together here: only plugins contain it whole
     const size_t at = bytes.find(mark);
     if (at == std::string::npos)
         throw InputError(

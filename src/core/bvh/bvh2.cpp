@@ -40,7 +40,8 @@ struct Box {
     }
     bool empty() const { return !(low.x <= high.x); }
     bool finite() const {
-        // Far beyond what a coordinate can be, products of boxes and rays would overflow; Embree draws the same line.
+        // The limit is far above any valid coordinate. Beyond it, products of boxes and rays would overflow; Embree has the
+        // same limit.
         constexpr float kMost = 1.844e18f;
         for (int i = 0; i < 3; ++i)
             if (!(low[i] >= -kMost) || !(high[i] <= kMost)) return false;
@@ -48,11 +49,11 @@ struct Box {
     }
 };
 
-// What Embree's builder makes, before it is flattened. Allocated by the builder's thread-local allocator, never destroyed.
+// The output of Embree's builder, before it is flattened. Allocated by the builder's thread-local allocator, never destroyed.
 struct BuildNode {
     BuildNode* children[2] = {};
     Box boxes[2];
-    const RTCBuildPrimitive* items = nullptr;  // leaves only
+    const RTCBuildPrimitive* items = nullptr;  // only in leaves
     uint32_t count = 0;
 };
 
@@ -91,7 +92,7 @@ vec3 vertex(const Scene& scene, const kernel::GeometryRecord& geometry, uint32_t
     return {scene.positions[i], scene.positions[i + 1], scene.positions[i + 2]};
 }
 
-// A box that no ray meets: infinitely far away in every direction. (An inverted box would be met: the kernels' slab test
+// A box that no ray hits: infinitely far away in every direction. (An inverted box would be hit, because the kernels' slab test
 // sorts the planes.)
 const Box kNowhere{vec3(kInfinity), vec3(kInfinity)};
 
@@ -112,7 +113,7 @@ class Builder {
         std::vector<uint32_t> set_roots(scene_.sets.size());
         std::vector<Box> set_boxes(scene_.sets.size());
         const size_t instances = scene_.instances.size();
-        for (size_t set = scene_.sets.size(); set-- > 0;) {  // the world last: it needs the boxes of what it instances
+        for (size_t set = scene_.sets.size(); set-- > 0;) {  // the world last: it needs the boxes of its instances
             std::vector<RTCBuildPrimitive> items = primitives_of(scene_.sets[set]);
             if (set == 0) {
                 for (size_t i = 1; i < instances; ++i) {
@@ -137,7 +138,7 @@ class Builder {
         return item;
     }
 
-    // The box of a transformed box, with room for the rounding of hits that lie on it.
+    // The box of a transformed box, enlarged for the rounding of hits that lie on it.
     static Box transformed(const Box& box, const kernel::TransformRecord& m) {
         Box result;
         if (box.empty()) return result;
@@ -167,7 +168,7 @@ class Builder {
                 if (triangles) {
                     for (uint32_t corner = 0; corner < 3; ++corner)
                         box.extend(vertex(scene_, geometry, 3 * p + corner));
-                    // min and max pass over NaN: look at the coordinates' sum, too.
+                    // min and max ignore NaN, so test the sum of the coordinates, too.
                     for (uint32_t corner = 0; corner < 3; ++corner) {
                         const vec3 v = vertex(scene_, geometry, 3 * p + corner);
                         if (!std::isfinite(v.x + v.y + v.z)) box.high.x = kInfinity;
@@ -182,7 +183,8 @@ class Builder {
         return items;
     }
 
-    // Room for the whole of a large tree at once, but never for one small tree after the other: each would copy all before it.
+    // Reserves room for all of a large tree at once, but not for each of many small trees: each reservation would copy
+    // everything before it.
     template <typename T>
     static void make_room(std::vector<T>& values, size_t more) {
         if (values.size() + more > values.capacity())
@@ -192,7 +194,8 @@ class Builder {
     uint32_t build_tree(std::vector<RTCBuildPrimitive>& items) {
         const auto root = static_cast<uint32_t>(result_.nodes.size());
         if (items.empty()) {
-            // A triangle without an area, which no ray meets: were it the root again, a walk that enters it would not end.
+            // An empty tree gets a triangle without an area, which no ray hits. (If a child were the root itself, a traversal
+            // might not end.)
             const uint32_t nothing = kLeafBit | 1u << 24 | uint32_t(result_.triangles.size() / 3);
             result_.triangles.insert(result_.triangles.end(), 3, vec4(0.0f));
             result_.nodes.emplace_back();
@@ -204,7 +207,7 @@ class Builder {
         arguments.byteSize = sizeof arguments;
         arguments.buildQuality = RTC_BUILD_QUALITY_MEDIUM;
         arguments.maxBranchingFactor = 2;
-        // A path through the world's tree and then an object's must fit the kernels' stack.
+        // A path through the world's tree and on through an object's must fit the kernels' stack.
         arguments.maxDepth = scene_.instances.size() > 1 ? kernel::BVH_DEPTH_INSTANCES : kernel::BVH_DEPTH;
         arguments.sahBlockSize = 1;
         arguments.minLeafSize = 1;
@@ -229,7 +232,7 @@ class Builder {
         }
         make_room(result_.nodes, items.size());
         make_room(result_.triangles, 3 * items.size());
-        if (top->items) {  // a tree of one leaf: a node whose other side no ray meets
+        if (top->items) {  // a tree of a single leaf: a node whose other child no ray hits
             Box box;
             for (uint32_t i = 0; i < top->count; ++i) box.extend(box_of(top->items[i]));
             result_.nodes.emplace_back();
@@ -254,7 +257,7 @@ class Builder {
         return index;
     }
 
-    // Instances stand alone (a leaf of count 0): a leaf that mixes becomes a small tree.
+    // Instances have leaves of their own (with a count of 0): a leaf with both kinds becomes a small tree.
     uint32_t leaf_bits(std::span<const RTCBuildPrimitive> items) {
         std::vector<RTCBuildPrimitive> sorted(items.begin(), items.end());
         const auto middle = std::partition(sorted.begin(), sorted.end(),

@@ -31,7 +31,8 @@ OCIO::ConstCPUProcessorRcPtr processor_of(const std::string& view) {
     transform->setDisplay(config()->getDefaultDisplay());
     transform->setView(view.c_str());
     transform->setDataBypass(false);
-    // Lossless: OpenColorIO's default trades accuracy of exponents for speed, which 8 bits show now and then.
+    // Lossless: by default, OpenColorIO trades accuracy of exponents for speed, and sometimes the difference is visible in 8
+    // bits.
     return config()->getProcessor(transform)->getOptimizedCPUProcessor(OCIO::OPTIMIZATION_LOSSLESS);
 }
 
@@ -71,8 +72,7 @@ void apply_view(Image& rgb, const std::string& view, float exposure) {
     for (float& value : rgb.pixels) {
         value *= scale;
         if (std::isnan(value)) value = 0.0f;
-        // The largest finite number stands for infinity: white in every view, where Inf would turn into NaN inside
-        // some.
+        // The largest finite number replaces infinity: it is white in every view, whereas Inf would turn into NaN inside some.
         value = std::clamp(value, -65504.0f, 65504.0f);
     }
     try {

@@ -1,7 +1,7 @@
 // From scene-linear light to what a display shows, by OpenColorIO and a configuration of our own (color_config.h).
 //
-// The configuration is built in, and the OCIO environment variable is not looked at: the same file and options make the
-// same picture on every machine.
+// The configuration is built in, and the OCIO environment variable is ignored: the same file and options make the same picture
+// on every machine.
 #pragma once
 
 #include "core/image/image.h"
@@ -22,7 +22,7 @@ struct View {
 // The views that `--view` knows, in the order in which the configuration lists them.
 const std::vector<View>& views();
 std::vector<std::string> view_names();
-// Throws InputError that lists the views where there is none of this name.
+// Throws an InputError that lists the views if there is none of this name.
 void check_view(const std::string& view);
 
 // Scene-linear Rec.709 light to display values, 0 = black to 1 = white, in place. `rgb` must have exactly three

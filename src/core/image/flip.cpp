@@ -221,7 +221,7 @@ Seen see(const std::vector<glm::vec3>& rgb, Size size, const Filters& filters) {
     return seen;
 }
 
-// LDR-FLIP of two pictures in [0, 1]; the larger of this and what is there goes into `error`.
+// LDR-FLIP of two pictures in [0, 1]; `error` becomes the maximum of its former value and this.
 void accumulate(const std::vector<glm::vec3>& image, const std::vector<glm::vec3>& reference, Size size,
                 const Filters& filters, std::vector<float>& error) {
     const Seen seen = see(image, size, filters), wanted = see(reference, size, filters);
@@ -265,12 +265,12 @@ constexpr double kAcesNumerator[3] = {0.6 * 0.6 * 2.51, 0.6 * 0.03, 0.0},
                  kAcesDenominator[3] = {0.6 * 0.6 * 2.43, 0.6 * 0.59, 0.14};
 
 glm::vec3 tone_mapped(glm::vec3 light) {
-    const glm::vec3 x = glm::min(light, 1e6f);  // far beyond white, and its square is no infinity
+    const glm::vec3 x = glm::min(light, 1e6f);  // far beyond white, and its square is still finite
     const auto quadratic = [&](const double(&k)[3]) { return (float(k[0]) * x + float(k[1])) * x + float(k[2]); };
     return glm::clamp(quadratic(kAcesNumerator) / quadratic(kAcesDenominator), 0.0f, 1.0f);
 }
 
-// The light that the curve maps to 0.85: brighter counts as over-exposed (EG 2021, section 3).
+// The light that the curve maps to 0.85: anything brighter counts as over-exposed (EG 2021, section 3).
 double overexposed_light() {
     constexpr double kTarget = 0.85;
     const double a = kAcesNumerator[0] - kTarget * kAcesDenominator[0],
@@ -279,7 +279,7 @@ double overexposed_light() {
     return (-b + std::sqrt(b * b - 4.0 * a * c)) / (2.0 * a);
 }
 
-// From the exposure at which the brightest pixel of the reference is just well exposed to that at which half of them
+// From the exposure at which the brightest pixel of the reference is just well exposed to the one at which half of the pixels
 // are.
 void choose_exposures(const std::vector<glm::vec3>& reference, FlipResult& result) {
     std::vector<float> luminances;
@@ -288,8 +288,8 @@ void choose_exposures(const std::vector<glm::vec3>& reference, FlipResult& resul
         luminances.push_back(glm::dot(color, glm::vec3(0.2126f, 0.7152f, 0.0722f)));
     const auto middle = luminances.begin() + std::ptrdiff_t(luminances.size() / 2);
     std::nth_element(luminances.begin(), middle, luminances.end());
-    // As in flip-evaluator: the upper of two middle ones, and a floor that keeps a mostly black reference's range
-    // finite.
+    // As in flip-evaluator: the upper of the two medians of an even number of pixels, and a lower bound that keeps the range
+    // finite for a mostly black reference.
     const auto exposure_for = [](float luminance) {
         return std::log2(overexposed_light() / double(std::max(luminance, std::numeric_limits<float>::epsilon())));
     };

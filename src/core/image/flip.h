@@ -1,4 +1,4 @@
-// FLIP: how different two images look to a person who flips between them on one screen; 0 (the same) to 1 per pixel.
+// FLIP: how different two images look to a person who flips between them on the same screen; 0 (identical) to 1 per pixel.
 //
 // LDR-FLIP: Andersson et al., "FLIP: A Difference Evaluator for Alternating Images", HPG 2020. HDR-FLIP: Andersson et
 // al., "Visualizing Errors in Rendered High Dynamic Range Images", Eurographics Short Papers 2021: the largest LDR-FLIP
@@ -28,7 +28,7 @@ struct FlipResult {
 // Both take scene-linear R, G, B images of one size (Image::rgb), without NaN and Inf.
 // LDR: light is cut to [0, 1], as a display does.
 FlipResult flip_ldr(const Image& image, const Image& reference, double pixels_per_degree = kFlipPixelsPerDegree);
-// HDR: tone-mapped with ACES' curve (Narkowicz's fit, as in the paper) at each exposure; negative light counts as none.
+// HDR: tone-mapped with ACES' curve (Narkowicz's fit, as in the paper) at each exposure; negative light counts as zero.
 FlipResult flip_hdr(const Image& image, const Image& reference, double pixels_per_degree = kFlipPixelsPerDegree);
 
 // The papers' colours for an error from 0 to 1: the magma map (Smith and van der Walt, CC0), sRGB.

@@ -60,7 +60,7 @@ Image Image::rgb() const {
     const int r = find_channel("R"), g = find_channel("G"), b = find_channel("B"), y = find_channel("Y");
     if (r >= 0 && g >= 0 && b >= 0) return gather(*this, {"R", "G", "B"}, {r, g, b});
     if (y >= 0) return gather(*this, {"R", "G", "B"}, {y, y, y});
-    // One colour channel of any name, with or without alpha, is grey.
+    // A single colour channel of any name, with or without alpha, is grey.
     int only = -1, colours = 0;
     for (int i = 0; i < channels; ++i)
         if (channel_names[size_t(i)] != "A") only = i, ++colours;
@@ -96,7 +96,7 @@ Image Image::crop(const PixelBounds& bounds) const {
 void Image::cut_to_window_of(const Image& window) {
     const bool is_cut_out = window.full_width > window.width || window.full_height > window.height;
     if (!is_cut_out || full_width != 0 || width != window.full_width || height != window.full_height) return;
-    // A data window may reach beyond the picture (overscan); those pixels are in no full image.
+    // A data window may extend beyond the picture (overscan); pixels there are not part of the full image.
     if (window.x < 0 || window.y < 0 || window.x + window.width > width || window.y + window.height > height) return;
     *this = crop({window.x, window.y, window.x + window.width, window.y + window.height});
 }

@@ -17,9 +17,9 @@ struct PixelBounds {
 };
 
 struct Image {
-    // What the numbers in `pixels` mean: light, or light encoded for a display with sRGB's curve (IEC 61966-2-1).
+    // The meaning of the numbers in `pixels`: light, or light encoded for a display with sRGB's curve (IEC 61966-2-1).
     enum class Encoding { kLinear, kSrgb };
-    // How the file that the image was read from stored a number.
+    // The number format in the file that the image was read from.
     enum class Storage { kUint8, kUint16, kUint32, kHalf, kFloat };
 
     int width = 0;
@@ -30,8 +30,8 @@ struct Image {
     std::map<std::string, std::string> metadata;  // attributes of the file
     Encoding encoding = Encoding::kLinear;
     Storage storage = Storage::kFloat;
-    // Where the pixels lie in the full picture, when they are a cut-out of it (EXR: data and display window).
-    // A full size of 0 means that there is no more than these pixels.
+    // The position of the pixels in the full picture, if they are a part of it (EXR: data and display window). A full size of 0
+    // means that these pixels are the full picture.
     int x = 0, y = 0, full_width = 0, full_height = 0;
 
     Image() = default;
@@ -46,8 +46,7 @@ struct Image {
     float at(int px, int py, int channel) const { return pixels[index(px, py, channel)]; }
 
     int find_channel(std::string_view name) const;  // -1 where there is none
-    // The channels named, in that order. Throws InputError that names a channel that is missing and those that are
-    // there.
+    // The named channels, in that order. If one is missing, throws an InputError that names it and lists those that exist.
     Image select(const std::vector<std::string>& names) const;
     // R, G, B (by name, whatever their order); one grey channel ("Y", or a single one) becomes three equal ones.
     // Throws InputError where the image has neither.
@@ -55,7 +54,7 @@ struct Image {
     // The pixels inside `bounds`, in this image's pixel coordinates. Throws InputError unless 0 <= x0 < x1 <= width,
     // ...
     Image crop(const PixelBounds& bounds) const;
-    // Where `window` is a cut-out of a picture of this image's size, keeps only the pixels that it has; else does nothing.
+    // If `window` is a part of a picture of this image's size, keeps only the pixels that it has; otherwise does nothing.
     void cut_to_window_of(const Image& window);
     // Appends channels to every pixel; `values` is [height][width][names.size()].
     void add_channels(const std::vector<std::string>& names, const std::vector<float>& values);
@@ -65,7 +64,7 @@ struct Image {
 // sRGB's transfer function (IEC 61966-2-1) and its inverse, extended to negative numbers by symmetry.
 float srgb_from_linear(float linear);
 float linear_from_srgb(float encoded);
-// Turns sRGB-encoded colour into light; alpha ("A") stays. Does nothing to an image that is linear already.
+// Converts sRGB-encoded colour to light, except alpha ("A"). Does nothing to an image that is linear already.
 void make_linear(Image& image);
 
 }  // namespace lampyris

@@ -13,16 +13,16 @@
 namespace lampyris {
 
 struct ReadOptions {
-    // Turn sRGB-encoded colour (integer formats, unless the file says otherwise) into light. Textures ask for false:
-    // they have an encoding of their own, and Image::encoding tells what the file's is.
+    // Converts sRGB-encoded colour (integer formats, unless the file says otherwise) to light. Textures pass false: they have
+    // an encoding parameter of their own, and Image::encoding has the file's.
     bool linear = true;
     // Only R, G, B (Image::rgb): grey expands, alpha and other channels are dropped.
     bool rgb = false;
 };
 
-// Throws InputError that names the file and says why it cannot be read. Integers become 0 to 1 (but unsigned 32-bit
-// channels of an EXR, which are counts: they keep their value); colour is not multiplied by alpha, where the file did
-// not.
+// Throws an InputError that names the file and says why it cannot be read. Integers are scaled to [0, 1], except unsigned
+// 32-bit channels of an EXR: these are counts, and keep their values. Colour is not multiplied by alpha unless the file already
+// did that.
 Image read_image(const std::string& path, const ReadOptions& options = {});
 
 struct WriteOptions {
@@ -30,26 +30,26 @@ struct WriteOptions {
     bool half = false;
     std::string compression = "zip";  // EXR: none, rle, zip, zips, piz
     int tile_size = 64;               // EXR, in pixels; 0 writes scanlines
-    // PNG: how light is shown (color.h). EXR and PFM hold light and take no notice.
+    // PNG: how light is shown (color.h). EXR and PFM hold light and ignore these.
     std::string view = kDefaultView;
     float exposure = 0.0f;  // stops
 };
 
 struct WriteResult {
-    // Finite numbers beyond what a half float can hold (65504), which were cut to it; EXR with `half` only.
+    // Number of finite values beyond what a half float can hold (65504), which were clamped to it; EXR with `half` only.
     size_t clamped = 0;
 };
 
 // The extensions that write_image knows: ".exr", ".pfm", ".png".
 const std::vector<std::string>& writable_extensions();
-// Throws InputError for an unknown extension, a folder that does not exist, or an unknown view; MachineError where
-// there is no permission. For before the work is done.
+// Throws InputError for an unknown extension, a folder that does not exist, or an unknown view; MachineError if permission is
+// missing. To be called before the work is done.
 void check_image_output(const std::string& path, const WriteOptions& options = {});
 
-// Writes what the extension says. EXR: every channel, metadata as string attributes, tiled; PFM: R, G, B (or the only
-// channel); PNG: R, G, B as the view shows them, 8 bits. The file appears complete or not at all. Where it cannot be
-// written (disk full, no permission), MachineError says why; the image is then saved in the folder for temporary files,
-// if that is possible, and the message says where.
+// Writes in the format of the extension. EXR: every channel, metadata as string attributes, tiled. PFM: R, G, B (or the only
+// channel). PNG: R, G, B as the view shows them, 8 bits. The file appears complete or not at all. If it cannot be written (disk
+// full, no permission), MachineError says why. The image is then saved in the folder for temporary files, if possible, and the
+// message says where.
 WriteResult write_image(const std::string& path, const Image& image, const WriteOptions& options = {});
 
 // An 8-bit picture as it is, without a view: [height][width][3], sRGB. For error maps and plots.

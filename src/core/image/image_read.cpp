@@ -32,7 +32,7 @@ std::string trimmed(std::string text) {
     return text;
 }
 
-// OpenImageIO's message, cut to its first line and freed of the file's name, which ours has already.
+// OpenImageIO's message, cut to its first line, without the file's name, which our message already has.
 std::string reason(const std::string& message, const std::string& path) {
     std::string text = trimmed(message.substr(0, message.find('\n')));
     if (const size_t at = text.find('"' + path + '"'); at != std::string::npos) text.replace(at, path.size() + 2, "it");
@@ -72,15 +72,15 @@ Image::Storage storage_of(const OIIO::TypeDesc& type) {
     }
 }
 
-// A header that promises far more than the file can hold is damaged or hostile; believing it would cost all memory.
-// No format here packs more than about 8000 to 1 (deflate's 1032, times eight for one-bit pixels).
+// A header that promises far more than the file can hold is damaged or hostile; trusting it would exhaust memory. No format
+// here packs more than about 8000 to 1 (deflate's 1032, times eight for one-bit pixels).
 void check_plausible(const std::string& path, const OIIO::ImageSpec& spec) {
     constexpr uint64_t kFree = uint64_t(64) << 20, kMostPacked = 20000;
     const uint64_t promised = uint64_t(spec.image_bytes(true)), held = uint64_t(fs::file_size(path));
     if (promised > kFree && promised / kMostPacked > held)
         fail(path, fmt::format("its header says {}x{} pixels of {} channels, but the file has only {} bytes",
                                spec.width, spec.height, spec.nchannels, held));
-    // As floats, and once more as it is packed.
+    // The pixels as floats, plus their packed form.
     const double needed = 2.0 * sizeof(float) * double(spec.width) * double(spec.height) * double(spec.nchannels);
     if (needed > double(machine_memory()))
         fail(path,
@@ -88,7 +88,7 @@ void check_plausible(const std::string& path, const OIIO::ImageSpec& spec) {
                          spec.width, spec.height, spec.nchannels, needed * 1e-9, double(machine_memory()) * 1e-9));
 }
 
-// Colour of an EXR with other primaries than Rec.709's (its attribute "chromaticities") becomes Rec.709's.
+// Colour of an EXR with primaries other than Rec.709's (its attribute "chromaticities") is converted to Rec.709.
 void make_rec709(Image& image, const OIIO::ImageSpec& spec) {
     float c[8];
     if (!spec.getattribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), c)) return;
@@ -124,7 +124,7 @@ Image read_with_openimageio(const std::string& path) {
     const bool is_integer = !spec.format.is_floating_point();
     if (!is_integer) make_rec709(image, spec);
     if (std::string_view(input->format_name()) == "openexr") {
-        // OpenImageIO maps unsigned integers to 0..1; in an EXR they are numbers of things.
+        // OpenImageIO scales unsigned integers to [0, 1]; in an EXR they are counts.
         for (int c = 0; c < spec.nchannels; ++c)
             if (spec.channelformat(c).basetype == OIIO::TypeDesc::UINT32)
                 for (size_t i = size_t(c); i < image.pixels.size(); i += size_t(spec.nchannels))

@@ -1,5 +1,5 @@
-// Writes images. Each is encoded in memory first, so that the bytes go to the disk by one function of ours, which knows
-// why the disk refused them.
+// Writes images. Each is encoded in memory first, so that our own function writes the bytes, and can say why the disk refused
+// them.
 #include "core/error.h"
 #include "core/file.h"
 #include "core/image/image_io.h"
@@ -55,7 +55,7 @@ Bytes encode(const char* format, const OIIO::ImageSpec& spec, const OIIO::TypeDe
     return buffer;
 }
 
-// What keeps its meaning in 11 bits of precision and a range of 65504.
+// Channels for which half floats (11 bits of precision, a range of 65504) suffice.
 bool fits_half(const std::string& channel) {
     const std::string layer = channel.substr(0, channel.find('.'));
     return channel.find('.') == std::string::npos
@@ -103,7 +103,7 @@ Bytes encode_png(int width, int height, const std::vector<uint8_t>& rgb,
     return encode("png", spec, OIIO::TypeDesc::UINT8, rgb.data());
 }
 
-// The last resort: hours of work must not be lost to a full disk or a folder that was removed meanwhile.
+// The last resort: hours of work must not be lost because the disk is full or a folder was removed meanwhile.
 [[noreturn]] void rescue(const std::string& path, const Bytes& bytes, const MachineError& failure) {
     std::string saved;
     try {

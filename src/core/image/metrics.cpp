@@ -56,15 +56,14 @@ Metrics measure(std::span<const float> image, std::span<const float> reference) 
             metrics.reference_mean[c] += r;
             squares += d * d;
             relative_squares += d * d / (r * r + 0.01);
-            // Light is not negative, but a pixel filter with negative lobes can make it so; |R| keeps the denominator
-            // positive.
+            // Light is not negative, but pixel filters with negative lobes can make it so; |R| keeps the denominator positive.
             absolute += std::fabs(d) / (std::fabs(r) + 0.01);
             symmetric += 2.0 * std::fabs(d) / (std::fabs(a) + std::fabs(r) + 0.01);
         }
         relative.push_back(relative_squares / 3.0);
     }
     metrics.pixels = relative.size();
-    const double pixels = double(metrics.pixels);  // 0 / 0 is NaN, as promised
+    const double pixels = double(metrics.pixels);  // 0 / 0 is NaN, as documented
     for (size_t c = 0; c < 3; ++c) {
         metrics.mean[c] /= pixels;
         metrics.reference_mean[c] /= pixels;
@@ -81,7 +80,7 @@ Metrics measure(std::span<const float> image, std::span<const float> reference) 
     if (trimmed > 0) {
         std::nth_element(relative.begin(), relative.begin() + std::ptrdiff_t(trimmed), relative.end(),
                          std::greater<>());
-        // Summed anew: subtracting a firefly of 1e30 would leave nothing of the rest.
+        // Summed again: subtracting a firefly of 1e30 would cancel everything else.
         sum = 0.0;
         for (size_t i = trimmed; i < relative.size(); ++i) sum += relative[i];
     }
@@ -114,7 +113,7 @@ Comparison compare_images(const Image& image, const Image& reference) {
     };
     comparison.hdr = is_float(image) && is_float(reference);
 
-    // FLIP looks at neighbourhoods, so left-out pixels need some value: one in which the images agree.
+    // FLIP looks at neighbourhoods, so left-out pixels need some value: they get the same one in both images.
     std::vector<size_t> left_out;
     for (size_t i = 0; i < shown.pixel_count(); ++i) {
         float *a = &shown.pixels[3 * i], *r = &wanted.pixels[3 * i];

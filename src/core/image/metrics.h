@@ -1,4 +1,4 @@
-// How far an image is from its reference. docs/metrics.md says when to look at which number.
+// How far an image is from its reference. docs/metrics.md says which number to use when.
 #pragma once
 
 #include "core/image/flip.h"
@@ -11,9 +11,9 @@
 
 namespace lampyris {
 
-// All sums are in double precision and in a fixed order. I is the image, R the reference; a mean is over pixels and
-// channels. A pixel with NaN or Inf in any channel of either image is left out of every number here but `non_finite`;
-// where no pixel is left, the numbers are NaN.
+// All sums are in double precision and in a fixed order. I is the image, R the reference; a mean is over pixels and channels. A
+// pixel with NaN or Inf in any channel of either image is excluded from every number here but `non_finite`; if no pixel
+// remains, the numbers are NaN.
 struct Metrics {
     double mse = 0.0, rmse = 0.0, relmse = 0.0, relmse_trimmed = 0.0, mape = 0.0, smape = 0.0;
     std::array<double, 3> mean{}, reference_mean{};  // of R, G and B
@@ -27,8 +27,7 @@ struct MetricFormula {
     const char* formula;
     double Metrics::*value;
 };
-// Every number of Metrics that is a distance, in the order in which it is shown: the one list behind tables, JSON and
-// statistics.
+// Every number of Metrics that is a distance, in display order: tables, JSON and statistics all use this list.
 const std::vector<MetricFormula>& metric_formulas();
 
 // The share of pixels with the largest relative squared error that relmse_trimmed leaves out.
@@ -42,12 +41,12 @@ void check_same_size(const Image& image, const Image& reference);
 // Compares R, G, B. Throws InputError that names both sizes where they differ.
 Metrics measure(const Image& image, const Image& reference);
 
-// Everything that `lampyris compare` tells.
+// Everything that `lampyris compare` reports.
 struct Comparison {
     Metrics metrics;
     int width = 0, height = 0;
-    bool hdr = true;  // HDR-FLIP; LDR-FLIP where one of the files holds integers
-    FlipResult flip;  // the error of a pixel that was left out is NaN, and the mean is without it
+    bool hdr = true;  // LDR-FLIP if one of the files holds integers, otherwise HDR-FLIP
+    FlipResult flip;  // a left-out pixel has the error NaN, and is excluded from the mean
 };
 Comparison compare_images(const Image& image, const Image& reference);
 

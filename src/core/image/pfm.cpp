@@ -18,7 +18,7 @@ static_assert(std::endian::native == std::endian::little, "the writer copies flo
 std::vector<unsigned char> encode_pfm(const Image& image) {
     if (image.channels != 1 && image.channels != 3)
         throw InputError(fmt::format("PFM holds one or three channels, not {}", image.channels));
-    // The sign of the scale says little-endian.
+    // A negative scale means little-endian.
     const std::string header =
         fmt::format("{}\n{} {}\n-1.0\n", image.channels == 3 ? "PF" : "Pf", image.width, image.height);
     const size_t row_bytes = size_t(image.width) * size_t(image.channels) * sizeof(float);

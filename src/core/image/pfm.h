@@ -11,11 +11,11 @@
 
 namespace lampyris {
 
-// `image` must have one or three channels, whose names are lost. Little-endian, scale 1. Every float survives, bit by
+// `image` must have one or three channels; their names are not stored. Little-endian, scale 1. Every float survives, bit by
 // bit.
 std::vector<unsigned char> encode_pfm(const Image& image);
-// Either byte order. The numbers are multiplied by the header's scale, as pbrt does. Throws InputError that says what
-// is wrong with the file, without the file's name.
+// Reads either byte order. The values are multiplied by the header's scale, as in pbrt. Throws an InputError that says what is
+// wrong with the file, without the file's name.
 Image decode_pfm(std::span<const std::byte> bytes);
 
 }  // namespace lampyris

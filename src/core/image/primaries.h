@@ -21,7 +21,7 @@ glm::dvec3 xyz_of(glm::dvec2 xy);
 // From linear RGB to XYZ, with the white's Y = 1 (SMPTE RP 177-1993).
 glm::dmat3 xyz_from_rgb(const Primaries& primaries);
 
-// From linear RGB with these primaries to linear Rec.709. White points are not adapted: the light keeps its colour.
+// From linear RGB with these primaries to linear Rec.709. White points are not adapted: the light's chromaticity is kept.
 glm::dmat3 rec709_from_rgb(const Primaries& primaries);
 
 }  // namespace lampyris

@@ -31,7 +31,7 @@ void check(const RenderRequest& request) {
     if (limits.target_error && !(*limits.target_error > 0.0)) throw InputError("error: --target-error must be above 0");
 }
 
-// What the request says of the integrator, without what is said to all of them and meant for the scene's builder.
+// The request's settings of the integrator. `media` is removed: every integrator accepts it, and the scene's builder uses it.
 PluginChoice requested_integrator(const RenderRequest& request, BuildOptions& build) {
     PluginChoice choice;
     if (!request.integrator.empty()) choice = parse_plugin_choice(request.integrator);
@@ -57,12 +57,11 @@ ChosenIntegrator choose(const RenderRequest& request, const PluginChoice& choice
                 fmt::format("error: --photon-map: integrator \"{}\" does not use a photon map", chosen.name));
         chosen.photon_map = request.photon_map;
     }
-    if (chosen.integrator->uses_photon_map())
-        create_photon_map(chosen.photon_map);  // says what is wrong with it, early
+    if (chosen.integrator->uses_photon_map()) create_photon_map(chosen.photon_map);  // reports errors early
     return chosen;
 }
 
-// What ends the rendering: the request's limits, or the scene's samples.
+// The limits of the rendering: those of the request, or the scene's number of samples.
 BudgetLimits choose_limits(const RenderRequest& request, const ChosenIntegrator& chosen, const SceneSettings& settings,
                            const std::string& unseen_error) {
     if (request.replay) return {1, {}, {}};
@@ -98,7 +97,7 @@ uint32_t sampler_number(const std::string& name) {
         fmt::format("error: unknown sampler \"{}\"; there are \"independent\" and \"sobol\"", shown(name)));
 }
 
-// R, G, B of the pixels that are rendered.
+// R, G, B of the rendered pixels.
 std::vector<float> read_reference(const std::string& file, const BuiltScene& built) {
     const std::array<int, 4>& crop = built.settings.crop;
     Image image = read_image(file, {true, true});
@@ -111,7 +110,7 @@ std::vector<float> read_reference(const std::string& file, const BuiltScene& bui
     return std::move(image.pixels);
 }
 
-// However a run ends.
+// Clears the interruption, however a run ends.
 class EndOfInterruption {
  public:
     explicit EndOfInterruption(Watch& watch) : watch_(watch) {}
@@ -130,7 +129,7 @@ struct Rendering::State {
     RenderOutcome run(uint32_t seed);
 
     const Clock::time_point start = Clock::now();
-    RenderRequest request;  // without its scene, once that is read
+    RenderRequest request;  // without its scene, once that has been read
     RenderObserver nobody;
     RenderObserver& observer;
     LoadedScene loaded;

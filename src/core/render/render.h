@@ -6,8 +6,8 @@
 //     request.limits.passes = 16;
 //     const RenderOutcome outcome = render(request);
 //
-// Nothing is printed. What cannot be rendered is an exception of core/error.h: InputError with all that is wrong with the scene
-// or the request, MachineError for what the machine cannot do.
+// Nothing is printed. Failures are exceptions of core/error.h: an InputError with all errors of the scene or the request, or a
+// MachineError for what the machine cannot do.
 #pragma once
 
 #include "core/device.h"
@@ -26,60 +26,59 @@
 
 namespace lampyris {
 
-// What is left as it is here is as the scene says.
+// Members that are left at their defaults take the scene's values.
 struct RenderRequest {
     SceneSource scene;
-    BuildOptions build;             // resolution, crop and media in place of the scene's
-    bool skip_unsupported = false;  // leave out what is not simulated, with a warning, instead of failing
+    BuildOptions build;             // resolution, crop and media; override the scene's
+    bool skip_unsupported = false;  // ignore features that are not simulated, with a warning, instead of failing
 
     std::string integrator;  // "sppm:alpha=0.5,maxdepth=8"
     std::vector<std::pair<std::string, std::string>>
-        integrator_settings;             // further ones, of whichever integrator renders
+        integrator_settings;             // further settings, for whichever integrator renders
     std::string photon_map;              // "stochastic_hash:slots=2"
     std::optional<std::string> sampler;  // "independent" or "sobol"
     std::optional<uint32_t> seed;
 
     std::string backend = "cpu";
     DeviceOptions device_options;
-    std::shared_ptr<Device> device;  // one that is there already, in place of those two
+    std::shared_ptr<Device> device;  // an existing device, instead of those two
 
-    // The first limit reached ends the rendering; without any, the scene's samples per pixel do.
+    // The first limit reached ends the rendering; without limits, it ends after the scene's samples per pixel.
     BudgetLimits limits;
-    // The same as limits.passes, but for integrators whose passes share their eye samples: there it is how many those are.
+    // The same as limits.passes, except for integrators whose passes share their eye samples: there it is the number of those.
     std::optional<uint32_t> samples_per_pixel;
 
-    std::string reference;                     // an image file: the convergence then has the error against it
+    std::string reference;                     // an image file: the convergence then includes the error against it
     std::optional<std::array<int, 3>> replay;  // x, y, pass: one sample of one pixel, alone
     uint64_t first_pass = 0;                   // number of the first pass
-    uint32_t max_slice = 0;                    // most passes at once; 0: as many as take a fraction of a second
-    uint64_t effects =
-        0;  // what kernels are built with beyond what the scene asks for: one build then serves many scenes
+    uint32_t max_slice = 0;  // maximum of passes in a slice; 0: as many as take a fraction of a second
+    uint64_t effects = 0;    // effects that kernels support beyond the scene's, so that one build serves many scenes
 };
 
 // What is about to be rendered.
 struct RenderPlan {
     const Scene& scene;
     const SceneSettings& settings;  // as the request changes them
-    const BudgetLimits& limits;     // what ends it
+    const BudgetLimits& limits;     // the limits in force
 };
 
-// Hears what happens while a scene is rendered, in the thread that renders, and may interrupt it (Watch::interrupt). An exception
-// thrown here ends the rendering and comes out of render(). An observer serves one rendering at a time.
+// Receives events while a scene is rendered, in the rendering thread, and may interrupt it (Watch::interrupt). An exception
+// thrown here ends the rendering and is passed on by render(). An observer serves one rendering at a time.
 class RenderObserver : public Watch {
  public:
-    // Of the scene: formatted, with the place in its file. Errors that are thrown come after.
+    // A warning about the scene: formatted, with the location in its file. Errors are thrown afterwards.
     virtual void warning([[maybe_unused]] const std::string& text) {}
-    // What of the scene was mapped or ignored, and should be known.
+    // Something in the scene was mapped or ignored, and the user should know.
     virtual void note([[maybe_unused]] const std::string& text) {}
-    // The scene is read and nothing is wrong with it; no device works yet.
+    // The scene has been read and is correct; no device is working yet.
     virtual void ready([[maybe_unused]] const RenderPlan& plan) {}
     // After each slice of passes that ends at a power of two, after the last one, and at least every two seconds.
     virtual void progress([[maybe_unused]] const RenderProgress& progress, [[maybe_unused]] const Film& film) {}
 };
 
 struct RenderOutcome {
-    // R, G, B, the features that docs/images.md lists, and its provenance as metadata. Interrupted before a pass is done
-    // (record.progress.passes is 0), it is black or incomplete.
+    // R, G, B, the features that docs/images.md lists, and its provenance as metadata. If the rendering was interrupted during
+    // the first pass (record.progress.passes is 0), the image is black or incomplete.
     Image image;
     RunRecord record;
     std::vector<kernel::FilmPixel> pixels;  // the sums behind the image
@@ -89,7 +88,7 @@ RenderOutcome render(const RenderRequest& request);
 RenderOutcome render(const RenderRequest& request, RenderObserver& observer);
 
 // The same in two steps, for a scene that is rendered more than once: the constructor reads it, builds it and loads it onto the
-// device. Each run begins anew, whatever ended the one before.
+// device. Each run starts afresh, however the one before ended.
 class Rendering {
  public:
     explicit Rendering(RenderRequest request);
@@ -99,7 +98,7 @@ class Rendering {
     Rendering& operator=(const Rendering&) = delete;
 
     RenderOutcome run();
-    RenderOutcome run(uint32_t seed);  // in place of the request's and the scene's
+    RenderOutcome run(uint32_t seed);  // overrides the seeds of request and scene
 
     const Scene& scene() const;
     const SceneSettings& settings() const;

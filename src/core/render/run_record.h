@@ -1,4 +1,5 @@
-// What a rendering was, what it cost, how wrong it is and why it ended: what is behind `--stats` and the metadata of images.
+// The record of a rendering: what was rendered, its cost, its error, and why it ended. Source of `--stats` and of image
+// metadata.
 #pragma once
 
 #include "core/effects.h"
@@ -28,14 +29,14 @@ struct ConvergencePoint {
 struct RunRecord {
     std::string scene;
     uint64_t scene_hash = 0;
-    std::vector<EffectRequest> effects;    // that the scene calls for
+    std::vector<EffectRequest> effects;    // those that the scene needs
     std::vector<std::string> notes;        // of the scene
-    std::vector<std::string> unsupported;  // what of the scene was left out
+    std::vector<std::string> unsupported;  // parts of the scene that were left out
     std::string integrator;
-    std::string integrator_asked;  // what the scene or the request names; empty: nobody names one
+    std::string integrator_asked;  // the name in the scene or the request; empty: none was given
     std::vector<std::pair<std::string, std::string>> integrator_parameters;
-    std::optional<std::string> photon_map;  // of integrators that use one, and
-    PhotonStatistics photons;               // what it did
+    std::optional<std::string> photon_map;  // for integrators that use one, with
+    PhotonStatistics photons;               // its results
     std::string backend, device;
     unsigned threads = 0;
     uint32_t seed = 0;
@@ -45,7 +46,7 @@ struct RunRecord {
     double samples_per_pixel = 0.0;
     RenderProgress progress;
     RenderEnd ended = RenderEnd::kPasses;
-    double total_s = 0.0;  // with reading the scene and loading it onto the device
+    double total_s = 0.0;  // including reading the scene and loading it onto the device
     double parse_s = 0.0, scene_s = 0.0;
     std::map<std::string, double> phases;
     DeviceStatistics device_statistics;
