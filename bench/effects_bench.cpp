@@ -1,5 +1,5 @@
-// Runs `path` once over a small film on one thread, with the build that the program picks for the scene (registered), or with
-// one that knows the scene's effects only (exact; see effects_path.radiance.h). bench/effects.py counts instructions in both.
+// Runs `path` once over a small film on one thread, with the build that the program picks for the scene (registered), or with a
+// build for exactly the scene's effects (exact; see effects_path.radiance.h). bench/effects.py counts instructions in both.
 //
 //     effects_bench SCENE WIDTHxHEIGHT SAMPLES registered|exact     prints JSON
 #include "backends/cpu/cpu_scene.h"
@@ -16,7 +16,7 @@
 #include <cstring>
 #include <string>
 
-// callgrind collects between entering and leaving this function (--toggle-collect).
+// callgrind measures between entering and leaving this function (--toggle-collect).
 extern "C" __attribute__((noinline)) void lampyris_measured_kernel(lampyris::CpuKernelFunction kernel,
                                                                    const lampyris::CpuInvocation& call) {
     kernel(call);

@@ -1,6 +1,6 @@
-// How fast and in how much memory scenes are read: text, and a PLY mesh of ten million triangles.
-// Goals: 50 MB/s of text; the mesh in 2 s beyond a plain read of its file; peak memory below 3x the mesh data.
-// Rates are per second of CPU time: reading is one thread's work, and its files are in the page cache.
+// Measures how fast scenes are read, and in how much memory: text, and a PLY mesh of ten million triangles.
+// Goals: 50 MB/s of text; the mesh in 2 s more than a plain read of its file; peak memory below 3x the mesh data.
+// Rates are per second of CPU time, because reading runs on one thread, and its files are in the page cache.
 #include "core/scene/description.h"
 #include "core/scene/ply.h"
 
@@ -91,7 +91,7 @@ SceneDescription parse(const std::string& path) {
     return scene;
 }
 
-// The peak of resident memory that `work` adds, mapped files included: in a process of its own.
+// The peak of resident memory that `work` adds, mapped files included; measured in a process of its own.
 double peak_bytes(const std::function<void()>& work) {
     const auto peak_of_child = [](const std::function<void()>& job) {
         const pid_t child = fork();
@@ -105,7 +105,7 @@ double peak_bytes(const std::function<void()>& work) {
         if (child < 0 || status != 0) std::abort();
         return 1024.0 * static_cast<double>(usage.ru_maxrss);
     };
-    malloc_trim(0);  // or the child would fill what this process has freed, and seem to need nothing
+    malloc_trim(0);  // or the child would reuse memory that this process has freed, and seem to need none
     return peak_of_child(work) - peak_of_child([] {});
 }
 

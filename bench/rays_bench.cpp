@@ -1,5 +1,5 @@
-// How much of the time of path tracing is ray tracing: `path` on the CPU backend, against bare Embree (rtcIntersect1 and
-// rtcOccluded1) on the very same rays, in the same process, with the same threads and blocks of work, in turns.
+// Measures how much of the time of path tracing is ray tracing: `path` on the CPU backend, against bare Embree (rtcIntersect1
+// and rtcOccluded1) on exactly the same rays, in the same process, with the same threads and blocks of work, in alternation.
 //
 //     rays_bench SCENE WIDTHxHEIGHT SAMPLES THREADS REPEATS      prints JSON
 #include "backends/cpu/cpu_scene.h"
@@ -31,7 +31,7 @@ struct RecordedRay {
     bool closest;
 };
 
-// Passes rays on to Embree and writes them down; one thread only.
+// Passes rays on to Embree and records them; one thread only.
 struct Recorder {
     CpuTracer next;
     std::vector<RecordedRay> rays;
@@ -62,7 +62,7 @@ double timed(tbb::task_arena& arena, size_t count, size_t block, const Work& wor
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// What Embree costs without anything of ours: the ray's set-up and the call.
+// The cost of Embree alone: setting up the ray, and the call.
 uint64_t trace_bare(RTCScene scene, const RecordedRay* rays, size_t begin, size_t end) {
     uint64_t hits = 0;
     for (size_t i = begin; i < end; ++i) {
@@ -100,7 +100,7 @@ int run(const std::string& file, int width, int height, uint32_t samples, int th
     PathParams params;
     const IntegratorFactory& factory = integrators().require("path");
     set_defaults(&params, factory.fields);
-    Diagnostics diagnostics(*loaded.sources);  // not looked at: the scene may be another integrator's
+    Diagnostics diagnostics(*loaded.sources);  // ignored: the scene may name another integrator
     read_parameters(&params, factory.fields, loaded.settings.integrator.parameters, diagnostics);
     const CpuKernelFunction kernel =
         find_cpu_kernel("integrators/path/path.radiance.h", CpuTracerKind::embree, scene.effects.mask());

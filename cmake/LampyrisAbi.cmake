@@ -1,4 +1,5 @@
-# Writes OUTPUT, a header that says for which Lampyris a plugin is built: VERSION and a hash of the headers it sees.
+# Writes OUTPUT, a header with the Lampyris that a plugin is built for: VERSION and a hash of the headers that the
+# plugin sees.
 # Run as a script by the build, whenever one of HEADERS (a ;-list) changes.
 set(all "")
 foreach(header IN LISTS HEADERS)

@@ -1,11 +1,11 @@
-# The libraries that Lampyris stands on, all from Debian 12's packages; docs/decisions/ says why each.
+# The libraries that Lampyris depends on, all from Debian 12's packages; docs/decisions/ gives the reason for each.
 add_library(lampyris_dependencies INTERFACE)
 find_package(Threads REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(TBB REQUIRED)
 find_package(embree 3 REQUIRED)
 find_package(OpenImageIO REQUIRED)
-find_package(OpenColorIO REQUIRED HINTS /usr/share/cmake)  # Debian puts its file where CMake does not look
+find_package(OpenColorIO REQUIRED HINTS /usr/share/cmake)  # Debian's file is not where CMake looks
 find_package(glm REQUIRED)
 find_package(fmt REQUIRED)
 find_package(spdlog REQUIRED)

@@ -3,7 +3,8 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/Lampyris)
 
-# Which Lampyris a plugin is built for: the build makes the header anew when one of those that plugins see changes.
+# The Lampyris that a plugin is built for: the build regenerates this header when one of the headers that plugins see
+# changes.
 file(GLOB_RECURSE plugin_headers CONFIGURE_DEPENDS src/core/*.h)
 list(APPEND plugin_headers ${material_headers})
 set(abi_header ${PROJECT_BINARY_DIR}/generated/core/plugin_abi.h)
@@ -24,15 +25,15 @@ if(TARGET lampyris_program)
 endif()
 install(EXPORT LampyrisTargets NAMESPACE Lampyris:: DESTINATION ${package_dir})
 install(DIRECTORY src/core DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lampyris FILES_MATCHING PATTERN *.h PATTERN *.glsl)
-# Materials are compiled into each kernel, a plugin's, too.
+# Materials are compiled into every kernel, including those of plugins.
 install(DIRECTORY src/materials ${PROJECT_BINARY_DIR}/generated/materials ${LAMPYRIS_EXTRA_MATERIALS}
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lampyris FILES_MATCHING PATTERN *.h)
-# Photon maps and their consumers, for those of plugins to be built with.
+# Photon maps and their consumers, which are combined with those of plugins.
 install(DIRECTORY src/accel src/integrators DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lampyris
   FILES_MATCHING PATTERN *.gather.h PATTERN *.consumer.h PATTERN *.layout.h PATTERN *.params.h
   PATTERN *.functions.h)
-# Installed files keep the dates of their sources, which may be before a plugin's last build. This one has the date at which
-# it came to say something else, and all of a plugin is built again after that.
+# Installed files keep the dates of their sources, which may be earlier than a plugin's last build. This file is dated
+# when its contents last changed, and plugins are rebuilt completely after that.
 install(CODE "
   set(abi_header \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}/lampyris/core/plugin_abi.h\")
   file(COPY_FILE \"${abi_header}\" \"\${abi_header}\" ONLY_IF_DIFFERENT)

@@ -2,11 +2,12 @@
 #                      OTHER_GATHERS names... OTHER_CONSUMERS names...)
 #
 # Makes kernel files part of a target, for both compilers: each *.kernel.h becomes C++ translation units (one per effect
-# variant, see backends/cpu/variants) and, with the headers, its text is embedded (.incbin) for glslang at run time.
-# A file is known by its path below a folder of BASE ("integrators/path/path.radiance.h"); the kernel's name is the file's name.
+# variant, see backends/cpu/variants). Its text and the headers' texts are embedded (.incbin) for glslang at run time. A
+# file is identified by its path below a folder of BASE ("integrators/path/path.radiance.h"); the kernel's name is the
+# file's name.
 #
 # A gather kernel is a pair of files, CONSUMER+GATHER (src/core/kernel/gather.h): each gather file is built with each
-# consumer, and with the consumers that another target has (OTHER_..., by name), and the other way round.
+# consumer, including those of another target (OTHER_..., by name), and vice versa.
 set(LAMPYRIS_KERNELS_DIR ${CMAKE_CURRENT_LIST_DIR})
 
 function(lampyris_add_kernels target)
@@ -23,18 +24,19 @@ function(lampyris_add_kernels target)
     endif()
     set(symbol "${symbols}_${index}")
     string(REGEX REPLACE "([\\\"])" "\\\\\\1" path "${file}")
-    # Hidden: the texts of a plugin are never taken for those of another that has a target of the same name.
+    # Hidden, so that a plugin's texts are not confused with those of another plugin that has a target of the same name.
     string(APPEND content "asm(R\"asm(.pushsection .rodata\n.hidden ${symbol}, ${symbol}_end\n.global ${symbol}, ${symbol}_end\n"
       "${symbol}: .incbin \"${path}\"\n${symbol}_end: .byte 0\n.popsection)asm\");\n"
       "extern \"C\" const char ${symbol}[], ${symbol}_end[];\n"
       "static const lampyris::KernelText text_${index}{\"${name}\", {${symbol}, size_t(${symbol}_end - ${symbol})}};\n")
     math(EXPR index "${index} + 1")
   endforeach()
-  # By the C++ compiler's own assembler: a plugin's project need not enable a language more, in whatever folder of it.
+  # Uses the C++ compiler's own assembler, so that a plugin's project need not enable another language in any of its
+  # folders.
   file(CONFIGURE OUTPUT ${out}/texts.cpp CONTENT "@content@" @ONLY)
   set_source_files_properties(${out}/texts.cpp PROPERTIES OBJECT_DEPENDS "${files}")
   target_sources(${target} PRIVATE ${out}/texts.cpp)
-  # Each unit reads the kernel headers anew, inside of its own struct.
+  # Each unit includes the kernel headers again, inside its own struct.
   set_target_properties(${target} PROPERTIES UNITY_BUILD OFF)
 
   foreach(file ${arg_KERNELS})
@@ -71,7 +73,7 @@ function(lampyris_add_kernels target)
   target_include_directories(${target} PRIVATE ${arg_BASE})
 endfunction()
 
-# How kernels include a file: by its path below the first of `bases` that it is in.
+# The name under which kernels include a file: its path below the first of `bases` that contains it.
 function(lampyris_kernel_name file bases result)
   foreach(base IN LISTS bases)
     cmake_path(IS_PREFIX base ${file} NORMALIZE below)
@@ -84,7 +86,7 @@ function(lampyris_kernel_name file bases result)
   message(FATAL_ERROR "${file}: in none of ${bases}")
 endfunction()
 
-# What the configuration reads of a file may change: configure again then.
+# Configuration reads these files: when one changes, configure again.
 function(lampyris_configured_by file)
   get_property(known DIRECTORY PROPERTY CMAKE_CONFIGURE_DEPENDS)
   if(NOT file IN_LIST known)
@@ -92,7 +94,7 @@ function(lampyris_configured_by file)
   endif()
 endfunction()
 
-# Whether no C++ is made of a file: one that asks for hardware which no CPU backend has says so.
+# Whether a file is not compiled as C++: files that need hardware which no CPU backend has contain a line that says so.
 function(lampyris_glsl_only file result)
   lampyris_configured_by(${file})
   file(STRINGS ${file} lines REGEX "^#define KERNEL_GLSL_ONLY")
@@ -103,8 +105,8 @@ function(lampyris_glsl_only file result)
   endif()
 endfunction()
 
-# The C++ units of one kernel, whose name is its files' names joined by '+'; `file` is the one that says for which effects. One
-# unit per tracer and effect variant: they compile side by side.
+# The C++ units of one kernel, whose name is its files' names joined by '+'; `file` is the one that lists the effect
+# sets. There is one unit per tracer and effect variant, so that they compile in parallel.
 function(lampyris_kernel_units target out KERNEL_FILE file)
   string(REPLACE "+" ";" parts "${KERNEL_FILE}")
   set(KERNEL_NAME "")
@@ -126,7 +128,7 @@ function(lampyris_kernel_units target out KERNEL_FILE file)
     string(REPLACE "," ";" KERNEL_VARIANTS "${KERNEL_VARIANTS}")
     string(REPLACE " " "" KERNEL_VARIANTS "${KERNEL_VARIANTS}")
   endif()
-  # What traces no rays is built once, for both tracers: gather kernels, and those that do not read the scene.
+  # Kernels that trace no rays are built once, for both tracers: gather kernels, and those that do not read the scene.
   file(STRINGS ${file} scene REGEX "^#include \"(core/kernel/(scene|trace|radiance)\\.h|.*\\.(kernel|radiance)\\.h)\"")
   lampyris_configured_by(${file})
   set(tracers embree bvh2)
@@ -139,8 +141,8 @@ function(lampyris_kernel_units target out KERNEL_FILE file)
       if(KERNEL_TRACER STREQUAL "bvh2" AND NOT KERNEL_VARIANT STREQUAL "kAllEffects")
         continue()  # the debugging backend needs no specialisation
       endif()
-      # Left to itself GCC passes surfaces and materials through memory: 10 % of a diffuse path's time. With every effect,
-      # inlining all would take a minute to compile.
+      # By default, GCC passes surfaces and materials through memory, which costs 10 % of a diffuse path's time. With
+      # every effect, inlining everything would take a minute to compile.
       if(KERNEL_VARIANT STREQUAL "kAllEffects")
         set(KERNEL_INLINE_ALL OFF)
       else()

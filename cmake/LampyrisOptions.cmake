@@ -3,9 +3,9 @@
 add_library(lampyris_abi INTERFACE)
 add_library(lampyris_options INTERFACE)
 target_link_libraries(lampyris_options INTERFACE lampyris_abi)
-# Same seed, same image on both backends: no contraction of a*b+c anywhere, host code included.
+# The same seed gives the same image on both backends: no contraction of a*b+c anywhere, host code included.
 target_compile_options(lampyris_abi INTERFACE -ffp-contract=off
-  # Nobody reads errno after sqrt, and no floating-point exception is trapped: neither changes a value.
+  # No code reads errno after sqrt or traps floating-point exceptions: neither option changes a value.
   -fno-math-errno -fno-trapping-math)
 target_compile_definitions(lampyris_abi INTERFACE GLM_FORCE_XYZW_ONLY GLM_FORCE_SILENT_WARNINGS)
 target_compile_features(lampyris_abi INTERFACE cxx_std_20)

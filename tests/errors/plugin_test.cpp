@@ -1,4 +1,4 @@
-// Files that are no plugins are refused with a sentence, and before any of their code runs.
+// Files that are not plugins are refused with a message, and before any of their code runs.
 #include "core/plugin.h"
 
 #include "core/error.h"
@@ -27,8 +27,8 @@ class PluginErrors : public testing::Test {
         }
         return "no error";
     }
-    // What a plugin's file holds before its ABI. Put together here, so that this program, which is no plugin, does not hold
-    // it whole: one of the tests has it refused for that.
+    // The text before the ABI in a plugin's file. It is assembled here, so that this program, which is not a plugin, does not
+    // contain it as a whole: in one of the tests, it is refused for that reason.
     static std::string mark() { return std::string("lampyris_plugin") + "_abi="; }
     const test::TemporaryFolder folder_;
 };

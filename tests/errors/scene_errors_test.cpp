@@ -1,6 +1,6 @@
-// Each scenes/*.pbrt is wrong, and says in its first lines how that must be told:
+// Each scenes/*.pbrt has an error. Its first lines say how this error must be reported:
 //   # expect: LINE:COLUMN: beginning of the message
-// All of these errors are reported, no others, and each caret stands below its place.
+// Exactly these errors are reported, and each caret is below its location.
 #include "core/scene/description.h"
 
 #include <gtest/gtest.h>

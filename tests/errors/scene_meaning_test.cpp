@@ -1,4 +1,4 @@
-// What a scene says may parse and still mean nothing: each error tells where, what, and what would have been right.
+// Scenes that parse but do not make sense: each error says where it is, what is wrong, and what would have been right.
 #include "support/build_text.h"
 
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 namespace lampyris {
 namespace {
 
-// The errors of a world must be exactly one, at that line and column, with those words in it.
+// The errors of a world must be exactly one, at that line and column, containing those words.
 void expect_error(const std::string& world, int line, int column, const std::vector<std::string>& words) {
     const BuiltText text = build_world(world);
     ASSERT_EQ(text.errors.size(), 1u) << world << "\n" << text.all_errors();
@@ -17,7 +17,7 @@ void expect_error(const std::string& world, int line, int column, const std::vec
         EXPECT_NE(error.find(word), std::string::npos) << "no \"" << word << "\" in\n" << error;
 }
 
-// The same, for what is known but not simulated; skipped, it must build.
+// The same for features that are known but not simulated; with skip_unsupported, the scene must build.
 void expect_unsupported(const std::string& world, const std::vector<std::string>& words) {
     const BuiltText text = build_world(world);
     ASSERT_EQ(text.errors.size(), 1u) << world << "\n" << text.all_errors();
@@ -58,7 +58,7 @@ TEST(SceneMeaning, MeshesMustFit) {
     expect_error("Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"point2 uv\" [ 0 0 1 0 ]", 1, 69,
                  {"\"uv\" has 4 numbers for 3 vertices", "6"});
     expect_error("Shape \"trianglemesh\" \"integer indices\" [ 0 1 2 ]", 1, 1, {"needs the parameter \"point3 P\""});
-    // What is there but cannot be read is reported once, as that.
+    // A parameter that exists but cannot be read is reported once, and not as missing, too.
     expect_error("Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 ]", 1, 22, {"has 8 numbers", "multiple of 3"});
     expect_error("Shape \"bilinearmesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 1 1 0 ] \"integer indices\" [ 0 1 2 ]", 1, 81,
                  {"4 a face"});
@@ -113,7 +113,7 @@ TEST(SceneMeaning, WhatIsNotSupportedIsToldAndCanBeSkipped) {
     expect_unsupported("Material \"subsurface\"\n" + kTriangle, {"test.pbrt:4:10", "material \"subsurface\""});
     expect_unsupported("ActiveTransform EndTime\nTranslate 1 0 0\nActiveTransform All\n" + kTriangle,
                        {"test.pbrt:7:1", "motion blur"});
-    // pbrt-v4's defaults scatter. Once for each medium, however often it is used.
+    // pbrt-v4's defaults scatter. Reported once per medium, however often it is used.
     const std::string fog = "MakeNamedMedium \"fog\" \"string type\" ",
                       in_fog = "\nMediumInterface \"fog\" \"\"\n" + kTriangle;
     expect_unsupported(fog + "\"homogeneous\"" + in_fog + kTriangle,
@@ -130,7 +130,7 @@ TEST(SceneMeaning, WhatIsNotSupportedIsToldAndCanBeSkipped) {
 
 TEST(SceneMeaning, MediaMustMakeSense) {
     const std::string fog = "MakeNamedMedium \"fog\" \"string type\" ";
-    // Whether something is in it or not.
+    // Reported whether or not the medium contains anything.
     for (const std::string& use : {std::string(), "\nMediumInterface \"fog\" \"\"\n" + kTriangle}) {
         expect_error(fog + "\"homogenous\"" + use, 1, 37, {"unknown medium", "did you mean \"homogeneous\"?"});
         expect_error(fog + "\"homogeneous\" \"rgb sigmaa\" [ 1 1 1 ] \"rgb sigma_s\" [ 0 0 0 ]" + use, 1, 51,
@@ -168,8 +168,8 @@ TEST(SceneMeaning, FilmsAndCameras) {
     EXPECT_NE(errors("PixelFilter \"gausian\"").find("did you mean"), std::string::npos);
 }
 
-// Where pbrt-v4 goes on after an array of the wrong length, or what is out of order, so does Lampyris: the same as without, or as
-// put right, and a warning says so.
+// If pbrt-v4 continues after an array of the wrong length, or values in the wrong order, so does Lampyris: as if they were
+// absent or corrected, and with a warning.
 TEST(SceneMeaning, FilmsAndCamerasThatPbrtMakesTheBestOf) {
     struct Case {
         std::string text, meant;

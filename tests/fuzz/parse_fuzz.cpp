@@ -1,4 +1,4 @@
-// Any text is a scene or an InputError: never a crash, a hang, or a description whose indices lead nowhere.
+// Any text is either a scene or an InputError: never a crash, a hang, or a description whose indices are out of range.
 #include "core/scene/description.h"
 
 #include <cassert>

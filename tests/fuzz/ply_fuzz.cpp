@@ -1,4 +1,4 @@
-// Any bytes are a mesh or an InputError, and a mesh's indices are those of its vertices.
+// Any bytes are either a mesh or an InputError, and the indices of a mesh are within its vertices.
 #include "core/error.h"
 #include "core/scene/ply.h"
 

@@ -1,5 +1,5 @@
-// Any text that parses is built into arrays whose indices lead somewhere, or is an InputError: never a crash, a hang, or
-// more memory than a text of a few kilobytes deserves. The names of files in it are looked for in the corpus' folder.
+// Any text that parses is either built into arrays whose indices are in range, or is an InputError: never a crash, a hang, or
+// more memory than a text of a few kilobytes deserves. Files that it names are searched for in the corpus' folder.
 #include "core/scene/build.h"
 
 #include <algorithm>
@@ -48,7 +48,7 @@ void check_textures(const Scene& scene) {
     for (const kernel::TextureOp& operation : scene.texture_ops) {
         if (operation.operation == kernel::TEXTURE_IMAGE) assert(operation.image < scene.images.size());
     }
-    // Every program ends.
+    // Every texture program has an end.
     assert(scene.texture_ops.empty() || (scene.texture_ops.back().flags & 1));
     for (const kernel::ImageRecord& image : scene.images) {
         const bool grey_bytes = (image.format & 0xff) == kernel::TEXEL_R8;
@@ -85,7 +85,7 @@ void check(const Scene& scene) {
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     std::string text(reinterpret_cast<const char*>(data), size);
-    // Without a slash, which no escape sequence can bring back, no name leads out of the folder.
+    // Without slashes, no name leads out of the folder. (Escape sequences cannot produce any.)
     std::replace(text.begin(), text.end(), '/', '_');
     auto sources = std::make_shared<Sources>();
     Diagnostics diagnostics(*sources);

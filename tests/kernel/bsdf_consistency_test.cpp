@@ -1,5 +1,5 @@
-// What must hold between the functions of a BSDF, at every input, on every backend: a sample says what evaluation says,
-// values are reciprocal, refraction is Snell's, and nothing is ever infinite, NaN or negative.
+// Relations between the functions of a BSDF, at every input, on every backend: samples agree with evaluation, values are
+// reciprocal, refraction obeys Snell's law, and no result is ever infinite, NaN or negative.
 #include "support/bsdf_probe.h"
 #include "support/layer_simulation.h"
 
@@ -65,8 +65,8 @@ TEST(BsdfConsistency, SamplesSayWhatEvaluationSays) {
     }
 }
 
-// f(wo, wi) of radiance is f(wi, wo) of importance; and within one direction pair, importance is eta^2 times radiance for
-// what is refracted (eta: relative index of wi's side), the same for what is reflected.
+// f(wo, wi) of radiance is f(wi, wo) of importance. For the same pair of directions, importance is eta^2 times radiance for
+// refracted light (eta: relative index of wi's side), and equal to it for reflected light.
 TEST(BsdfConsistency, ValuesAreReciprocal) {
     std::mt19937 random(5);
     std::vector<vec4> pairs, swapped;

@@ -1,4 +1,4 @@
-// Energy: lossless materials return all of it, and rough ones as much as an independent quadrature says, on every backend.
+// Energy: lossless materials return all of it, and rough ones as much as an independent quadrature predicts, on every backend.
 //
 // False alarms: the statistical tests of this file fail by chance with probability below kFalseAlarm in all (Bonferroni's
 // correction over comparisons and backends). Streams are seeded, so that a run that passed passes again.
@@ -28,9 +28,9 @@ struct Albedo {
     double reflected = 0, transmitted = 0;
 };
 
-// An integral over microfacet normals m, each of which sends wo to one wi: D(m) |wo.m| G2(wo, wi) / |wo.z|, of which
-// Fresnel's share is reflected. A midpoint rule over the parameters of Walter et al. 2007, equations 35 and 36, in which
-// D(m) m.z is flat; with u = 1 - s^2, since the weight has a root singularity at u = 1.
+// An integral over microfacet normals m, each of which reflects wo to one wi: D(m) |wo.m| G2(wo, wi) / |wo.z|, times the
+// Fresnel reflectance. A midpoint rule over the parameters of Walter et al. 2007, equations 35 and 36, in which D(m) m.z is
+// constant; with u = 1 - s^2, because the weight has a root singularity at u = 1.
 Albedo ggx_albedo(dvec3 wo, double ax, double ay, double n, double k, bool glass) {
     constexpr int kSteps = 400;
     Albedo albedo;
@@ -81,7 +81,7 @@ Energy sampled_energy(BsdfProber& prober, const BsdfProbe& probe) {
     return e;
 }
 
-// The same by a midpoint rule over f cos, in z = t |t| and phi: values and sampling are tested apart.
+// The same by a midpoint rule over f cos, in z = t |t| and phi: values and sampling are tested separately.
 double evaluated_energy(BsdfProber& prober, const BsdfProbe& probe) {
     constexpr int kT = 500, kPhi = 600;
     static std::vector<vec4> wi;
@@ -190,8 +190,8 @@ TEST(BsdfFurnace, RoughMaterialsMatchQuadrature) {
     }
 }
 
-// A lossless rough mirror keeps its energy with compensation, but for the fit's error (0.0065 of 1 - E, over E >= 0.35), and
-// loses what single scattering loses without.
+// With compensation, a lossless rough mirror keeps its energy, except for the fit's error (0.0065 of 1 - E, over E >= 0.35).
+// Without it, it loses the energy that single scattering loses.
 TEST(BsdfFurnace, CompensationReturnsTheMissingEnergy) {
     for (const std::string& backend : usable_backends()) {
         BsdfProber& prober = BsdfProber::on(backend);

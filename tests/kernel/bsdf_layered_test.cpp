@@ -97,7 +97,8 @@ TEST(BsdfLayered, MatchesIndependentSimulation) {
             expect(s.albedo, truth.albedo, 0, "sampled energy");
             expect(s.cosine, truth.cosine, 0, "sampled energy by z");
             expect(s.x, truth.x, 0, "sampled energy by x");
-            // Values have no delta lobes: with a smooth coat, its own reflection is missing (with all else smooth, everything).
+            // Values have no delta lobes: with a smooth coat, the coat's own reflection is missing (if everything else is
+            // smooth, so is everything).
             double r = c.layers.alpha == 0 ? fresnel_reflectance(wo.z, c.layers.eta, 0) : 0;
             Moments e = evaluated(prober, probe);
             expect(e.albedo, truth.albedo, r, "evaluated energy");
@@ -127,8 +128,8 @@ TEST(BsdfLayered, DefaultFollowsPbrtsWeights) {
     }
 }
 
-// The density is approximate, but must stay a weight that makes sense: positive wherever light is scattered to, and with an
-// integral of order one: pbrt takes densities inside the coat for densities outside, which are up to eta^2 smaller.
+// The density is approximate, but must remain a sensible weight: positive wherever light is scattered to, and with an integral
+// of order one. (pbrt uses densities inside the coat for densities outside, which are up to eta^2 smaller.)
 TEST(BsdfLayered, DensityIsPositiveAndOfOrderOne) {
     for (const std::string& backend : usable_backends()) {
         BsdfProber& prober = BsdfProber::on(backend);
@@ -156,7 +157,7 @@ TEST(BsdfLayered, DensityIsPositiveAndOfOrderOne) {
     }
 }
 
-// The closed form for clear coats against the walk, which any albedo of the medium calls for, at several depths.
+// The closed form for clear coats against the walk, which is used for a medium of any albedo, at several depths.
 TEST(BsdfLayered, ClosedFormIsTheWalksExpectation) {
     std::vector<BsdfProbe> clear;
     for (uint depth : {0u, 1u, 2u, 3u, 6u, 50u})

@@ -1,4 +1,4 @@
-// Asks scattering functions, for tests: samples them, or evaluates them at given directions.
+// Calls scattering functions, for tests: samples them, or evaluates them at given directions.
 #include "core/kernel/prelude.h"
 #ifndef __cplusplus
 #include "core/kernel/effects.h"
@@ -6,7 +6,7 @@
 #endif
 #include "core/kernel/math.h"
 #include "core/kernel/surface.h"
-// GLSL wants this order.
+// This order is required by GLSL.
 // clang-format off
 #include "core/kernel/random.h"
 #include "core/kernel/bsdf.h"

@@ -1,4 +1,4 @@
-// Asks the camera for rays and the pixel filter for offsets.
+// Generates the camera's rays and the pixel filter's offsets.
 #include "core/kernel/scene.h"
 
 CONST uint PROBE_FILTER = 0u;  // results[i]: offset, weight

@@ -1,4 +1,5 @@
-// Pixel filters are sampled in proportion to their absolute value with the right sign, and cameras shoot where they look.
+// Pixel filters are sampled in proportion to their absolute value with the right sign, and cameras generate rays in the right
+// directions.
 #include "core/scene/filter_table.h"
 #include "support/histogram.h"
 #include "support/test_scene.h"

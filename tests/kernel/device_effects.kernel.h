@@ -1,4 +1,4 @@
-// For device_test: code of an effect that was not asked for vanishes.
+// For device_test: code for an effect that was not requested is removed.
 #include "core/kernel/prelude.h"
 #ifndef __cplusplus
 #include "core/kernel/effects.h"

@@ -1,4 +1,4 @@
-// For device_test: sums limits[index] terms in a loop that is bounded, and says so where the bound was not enough.
+// For device_test: sums limits[index] terms in a loop with a bound, and reports if the bound was exceeded.
 #include "core/kernel/prelude.h"
 
 BUFFER_RO(0, uint, limits)

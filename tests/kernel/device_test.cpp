@@ -1,5 +1,5 @@
-// What a device promises, on every backend: buffers, ranges of indices, errors of kernels that did not finish, and, for
-// Vulkan, the cache of compiled kernels.
+// The guarantees of a device, on every backend: buffers, ranges of indices, errors of unfinished kernels, and, for Vulkan, the
+// cache of compiled kernels.
 #include "core/device.h"
 #include "core/error.h"
 #include "core/kernel_types.h"
@@ -42,7 +42,7 @@ TEST(Device, BuffersKeepWhatIsUploaded) {
             if (staging && backend != "vulkan") continue;
             const auto device = create_device(backend, staging ? with({{"staging", "on"}}) : DeviceOptions());
             std::vector<uint32_t> data(5'000'003),
-                back(data.size());  // more than one piece of staging, and no round number
+                back(data.size());  // more than one piece of staging, and not a multiple of it
             std::iota(data.begin(), data.end(), 7u);
             const auto buffer = device->create_buffer(data.size() * 4, "data");
             EXPECT_EQ(buffer->size(), data.size() * 4);
@@ -191,7 +191,7 @@ class ShaderCacheTest : public testing::Test {
     void SetUp() override {
         if (!has_vulkan()) GTEST_SKIP() << "no Vulkan device";
     }
-    // Compiles and runs on a new device; the value of results[3].
+    // Compiles and runs on a new device; returns results[3].
     float run(uint64_t effects = 0) {
         const auto device = create_device("vulkan", with({{"cache", folder_.string()}}));
         const auto kernel = device->compile("kernel/device_effects.kernel.h", effects);

@@ -1,4 +1,4 @@
-// Asks the CDFs of a scene: of numbers, the interval; of the bits of two numbers, the texel and the place in it.
+// Samples the CDFs of a scene: for a number, the interval; for the bits of two numbers, the texel and the position in it.
 #include "core/kernel/prelude.h"
 #ifndef __cplusplus
 #include "core/kernel/effects.h"

@@ -1,6 +1,6 @@
-// CDFs of integers on every backend: each interval is found for its own numbers and no others, and its share is their count over the
-// total. All of it is exact: nothing is left to chance but the places in an interval of a single number, whose mean has a false-alarm
-// rate of 1e-7 a backend.
+// CDFs of integers on every backend: each interval is found for its own numbers and no others, and its share is their count
+// over the total. All of this is exact. Only positions in an interval with a single number are random; their mean has a
+// false-alarm rate of 1e-7 per backend.
 #include "support/device_run.h"
 #include "support/statistics.h"
 #include "support/test_scene.h"
@@ -79,8 +79,8 @@ TEST(Distribution, EveryIntervalIsFoundByItsNumbersAndNoOthers) {
     }
 }
 
-// The density that a sample is weighted by is that of the texel that was sampled, to the bit; the place lies in that texel, and is
-// uniform in it even where the texel's row, or its column, has a single number.
+// The density that weights a sample is that of the sampled texel, to the bit. The position lies in that texel, and is uniform
+// in it even if the texel's row, or its column, has a single number.
 TEST(Distribution, TexelsAreSampledWithTheirDensity) {
     constexpr uint32_t w = 8, h = 8, kSamples = 4096;
     std::vector<float> picture(w * h, 1.0f);
@@ -124,7 +124,8 @@ TEST(Distribution, TexelsAreSampledWithTheirDensity) {
     }
 }
 
-// What roulette weighs by is how often its number is below: of the 2^24 numbers that there are, so many over 2^24.
+// The roulette's weight corresponds to how often its number is below the threshold, which is a count of the 2^24 possible
+// numbers, over 2^24.
 TEST(Distribution, SmallChancesAreMetAsOftenAsTheySay) {
     std::vector<float> chances = {1.0f, 0.5f, 1e-3f, 0x1p-24f, 1e-9f, 1e-30f, 0.999999f};
     for (const std::string& backend : usable_backends()) {
@@ -142,7 +143,7 @@ TEST(Distribution, SmallChancesAreMetAsOftenAsTheySay) {
         for (size_t i = 0; i < inputs.size(); ++i) {
             const float chance = std::bit_cast<float>(answers.results[i].x);
             EXPECT_EQ(double(chance) * 0x1p24, double(inputs[i].z)) << std::bit_cast<float>(inputs[i].x);
-            // 2^24 itself is no number.
+            // 2^24 itself does not occur.
             if (inputs[i].z < 1u << 24 || inputs[i].w == 1u) {
                 EXPECT_EQ(answers.results[i].y, inputs[i].w) << std::bit_cast<float>(inputs[i].x);
             }

@@ -1,4 +1,4 @@
-// How much light reaches the front of a disk: by photons that leave lights, and by looking for lights from its points.
+// Measures how much light reaches the front of a disk: by photons from the lights, and by sampling lights from its points.
 #include "core/kernel/scene.h"
 
 struct EmissionProbe {

@@ -1,5 +1,5 @@
-// Photons bring a surface as much light as next-event estimation finds there, whatever the light: two estimators that share no
-// density. A disk that nothing hides receives both.
+// Photons bring as much light to a surface as next-event estimation finds there, whatever the light: two estimators that share
+// no density. The disk is not occluded, and receives both.
 //
 // False-alarm rate: 14 lights x backends x 3 channels at 1e-7 each, fixed seeds. Power: both sides are known to about 0.5 %, so
 // that a wrong factor (pi, 2, a missing cosine, a probability) of more than 4 % fails nearly always.

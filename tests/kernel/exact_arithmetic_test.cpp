@@ -1,4 +1,4 @@
-// core/kernel/exact.glsl, read as C++: quotients and roots round as the processor's do, whatever a device's first guess is.
+// core/kernel/exact.glsl, compiled as C++: quotients and roots round like the processor's, whatever a device's first guess is.
 #include <gtest/gtest.h>
 
 #include "core/kernel/cpp_kernel.h"
@@ -85,7 +85,7 @@ TEST(ExactArithmetic, VectorsComponentByComponent) {
     EXPECT_EQ(exact_root(a), glm::sqrt(a));
 }
 
-// Any bits; now and then a zero or an infinity; no denormals, which both backends flush.
+// Random bits; occasionally a zero or an infinity; no denormals, which both backends flush.
 float any_number(std::mt19937& random) {
     const float x = std::bit_cast<float>(uint32_t(random()));
     if (random() % 32 == 0) return std::copysign(random() % 2 ? 0.0f : HUGE_VALF, x);
@@ -94,7 +94,7 @@ float any_number(std::mt19937& random) {
 
 bool same_or_nan(float a, float b) { return std::isnan(a) ? std::isnan(b) : same(a, b); }
 
-// What overflows is infinite, and what is too small to be normal is zero.
+// Results that overflow are infinite, and those that are too small to be normal are zero.
 TEST(ExactArithmetic, AnyNumbers) {
     guess_off_by = 0;
     std::mt19937 random(7);
@@ -103,7 +103,7 @@ TEST(ExactArithmetic, AnyNumbers) {
         const float a = any_number(random), b = any_number(random);
         float quotient = a / b;
         if (quotient != 0 && std::abs(quotient) <= 0x1p-126f) {
-            // Rounded to 24 bits as if there were no smallest exponent: x86 flushes what is tiny after that.
+            // Rounded to 24 bits as if there were no smallest exponent; x86 then flushes tiny results.
             const bool is_tiny = float(std::abs(double(a)) * 0x1p64 / std::abs(double(b))) < 0x1p-62f;
             quotient = std::copysign(is_tiny ? 0.0f : 0x1p-126f, quotient);
             ++underflows;

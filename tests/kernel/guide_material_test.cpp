@@ -1,5 +1,5 @@
-// The material of docs/material-guide.md, which Lampyris does not have, in a kernel of its own (tests/CMakeLists.txt), on every
-// backend: samples follow the density and say what evaluation says, values are reciprocal, no light is made.
+// The material of docs/material-guide.md, which is not part of Lampyris, in a kernel of its own (tests/CMakeLists.txt), on
+// every backend: samples follow the density and agree with evaluation, values are reciprocal, no energy is created.
 //
 // False alarms: the statistical test fails by chance with probability below kFalseAlarm in all (Bonferroni's correction over
 // cases and backends). Streams are seeded, so that a run that passed passes again.
@@ -28,7 +28,7 @@ BsdfProbe clay(float reflectance, float roughness, double cosine) {
     return p;
 }
 
-// The share of light that leaves, by a midpoint rule over f cos.
+// The share of light that leaves the surface, by a midpoint rule over f cos.
 double energy(const std::string& backend, const BsdfProbe& probe) {
     constexpr int kZ = 200, kPhi = 200;
     std::vector<vec4> wi;

@@ -1,4 +1,4 @@
-// What is hard on a kd-tree in particular; photon_map_test and photon_map_long_test have the rest.
+// Cases that are particularly hard for a kd-tree; photon_map_test and photon_map_long_test cover the rest.
 #include "support/photon_sets.h"
 
 #include <gtest/gtest.h>
@@ -14,8 +14,9 @@ using namespace test;
 
 const std::vector<std::string> kMaps{"kd_tree", "kd_tree:leaf=4", "kd_tree:leaf=64"};
 
-// Each octave of distance from a point has as many photons: splits in the spatial middle take off one octave at a time, so that the
-// tree is deeper than a query's stack, and is split by key below. Queries find some, or everything.
+// Each octave of distance from a point has the same number of photons: splits at the spatial middle remove one octave at a
+// time, so that the tree becomes deeper than a query's stack, and is split by key below that. Queries find some photons, or
+// all.
 TEST(KdTree, PhotonsOfEveryScale) {
     std::mt19937 random(5);
     std::uniform_real_distribution<float> uniform(1.0f, 2.0f);
@@ -38,7 +39,7 @@ TEST(KdTree, PhotonsOfEveryScale) {
     }
 }
 
-// From none to more than leaves and groups of cells hold.
+// From none to more than fit into leaves and groups of cells.
 TEST(KdTree, FewPhotons) {
     std::vector<PhotonCase> cases;
     for (uint32_t photons = 1; photons < 300; photons += 1 + photons / 4)

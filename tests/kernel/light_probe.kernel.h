@@ -1,4 +1,5 @@
-// Asks lights: samples them from a point, and tells with which density a direction from a point would have been sampled.
+// Queries lights: samples them from a point, and computes the density with which a direction from a point would have been
+// sampled.
 #include "core/kernel/scene.h"
 
 CONST uint PROBE_SAMPLE =
@@ -76,7 +77,8 @@ KERNEL(light_probe) {
         first = pdf;
         hits = 1.0f;
     } else if (look && HAS(EFFECT_AREA_LIGHTS)) {
-        // A sampled point may lie behind another one of the same shape: the density of the direction is that of all of them.
+        // A sampled point may lie behind another one of the same shape: the density of the direction is the sum over all of
+        // them.
         vec3 o = ref_p;
         for (int i = 0; i < (sampling ? 1 : 4); ++i) {
             Surface s = no_surface();

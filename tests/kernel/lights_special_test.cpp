@@ -24,7 +24,7 @@ kernel::LightRecord record(uint32_t kind, uint32_t image = kernel::NONE, uint32_
     return light;
 }
 
-// The one sample that a light at a point gives.
+// The only sample of a light at a point.
 LightAnswer only_sample(Device& device, TestScene& scene, vec3 ref_p) {
     constexpr uint64_t kEffects =
         kernel::EFFECT_POINT_LIGHTS | kernel::EFFECT_DISTANT_LIGHTS | kernel::EFFECT_PROJECTION_LIGHTS;
@@ -144,7 +144,7 @@ TEST(Lights, GoniometricImagesHaveTheirPoleUp) {
     }
 }
 
-// Lights of different power and kind together give the sum of what each gives, and each is chosen as often as it says.
+// Lights of different power and kind together give the sum of what each gives, and each is chosen with its stated probability.
 TEST(Lights, ManyLightsAddUp) {
     for (const std::string& backend : usable_backends()) {
         SCOPED_TRACE(backend);
@@ -221,14 +221,14 @@ TEST(Lights, EmissionHasTexturesAndMasks) {
         const double expected = kPi * corner * 2 * (0.5 * 4 * 0.5);
         EXPECT_LT(std::abs(mean.value() - expected), normal_threshold(1e-7) * mean.error());
         EXPECT_LT(mean.error(), 0.01 * expected);
-        // Looked at, it is bright on the left, and masks are the tracer's business.
+        // Seen directly, it is bright on the left; masks are handled by the tracer.
         const auto seen = asker.look(vec3(0), {vec4(-0.5f, 0, 1, 0), vec4(0.5f, 0, 1, 0)});
         EXPECT_NEAR(seen[0].radiance, 2, 1e-6);
         EXPECT_EQ(seen[1].radiance, 0);
     }
 }
 
-// A far, tiny or huge light is sampled where it is, with finite densities.
+// A light that is far, tiny or huge is sampled at its real position, with finite densities.
 TEST(Lights, ExtremeSizesStayFinite) {
     for (const std::string& backend : usable_backends()) {
         const auto device = create_device(backend);

@@ -1,4 +1,4 @@
-// Lights: that directions are sampled with the density that is reported, and that the light that arrives is right.
+// Lights: directions are sampled with the density that is reported, and the light that arrives is right.
 //
 // False alarms: chi-squared tests reject at kAlpha / kTests, with kAlpha = 1e-5 for the whole file on one backend; seeds are
 // fixed, so that a build that passes passes again.
@@ -25,7 +25,7 @@ constexpr float kTwoPi = 2 * std::numbers::pi_v<float>;
 constexpr double kAlpha = 1e-5;
 constexpr int kTests = 64;  // at least as many chi-squared and z tests as there are here
 constexpr uint32_t kTwoSided = kernel::LIGHT_TWO_SIDED;
-// What the probe is compiled for: shaders for everything take long to compile.
+// The effects that the probe is compiled for: shaders for everything take long to compile.
 constexpr uint64_t kAreaEffects =
     kernel::EFFECT_QUADRICS | kernel::EFFECT_BILINEAR | kernel::EFFECT_AREA_LIGHTS | kernel::EFFECT_QUADRIC_LIGHTS;
 constexpr uint64_t kInfiniteEffects = kernel::EFFECT_ENVIRONMENT | kernel::EFFECT_ENVIRONMENT_IMAGE;
@@ -134,7 +134,7 @@ Domain cone_about(const std::vector<LightAnswer>& samples) {
 struct Fit {
     double p;        // of the samples against the density reported,
     double p_wrong;  // and against one that is wrong by 15 %, or 30 % with folds
-    double missing;  // what the density's integral lacks to 1
+    double missing;  // by how much the density's integral falls short of 1
 };
 
 Fit fit(LightAsker& asker, vec3 ref_p, bool first_hit_only = false, bool folds = false) {
@@ -184,7 +184,7 @@ TEST(Lights, AreaLightsAreSampledWithTheirDensity) {
             EXPECT_GT(result.p, kAlpha / kTests);
             EXPECT_LT(result.p_wrong, kAlpha / kTests) << "the test has no power";
             EXPECT_NEAR(result.missing, 0, c.folds ? 1.5e-2 : 4e-3);
-            // A sample says of its own density what light_pdf says where its direction first meets the light.
+            // The density that a sample reports equals light_pdf where its direction first hits the light.
             int met = 0;
             const auto samples = asker.sample(c.ref_p, 4000, 2);
             std::vector<float> densities;
@@ -242,7 +242,7 @@ TEST(Lights, InfiniteLightsAreSampledWithTheirDensity) {
                 EXPECT_GE(s.distance, 3e38f);
             }
             EXPECT_LE(off, 4);
-            // What is sampled and what is seen is the same light: the irradiance on a tilted plane.
+            // The light that is sampled is the light that is seen: the irradiance on a tilted plane.
             const dvec3 normal = glm::normalize(dvec3(1, 2, 2));
             const Domain domain = sphere_domain();
             std::vector<vec4> grid;

@@ -1,4 +1,4 @@
-// Asks for the Bsdf at a point that the test describes.
+// Makes the Bsdf at a point that the test describes.
 #include "core/kernel/scene.h"
 
 struct MaterialProbe {

@@ -56,7 +56,7 @@ std::vector<glm::vec4> evaluate(Device& device, const std::vector<glm::vec4>& in
     return results;
 }
 
-// A value that is zero, a NaN whatever its payload, or a number: what may be compared by its bits.
+// A canonical form: a zero, a NaN whatever its payload, or a number; these can be compared by their bits.
 uint32_t canonical(float x) {
     const uint32_t bits = std::bit_cast<uint32_t>(x);
     if ((bits & 0x7fffffffu) > 0x7f800000u) return 0x7fc00000u;

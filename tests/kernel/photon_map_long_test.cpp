@@ -13,7 +13,7 @@ using namespace test;
 class PhotonMapLong : public testing::TestWithParam<std::string> {};
 
 TEST_P(PhotonMapLong, ExactOnesFindWhatBruteForceFinds) {
-    // Where each query finds every photon there is nothing to look up, and 10^10 photons to add for each map.
+    // If each query finds every photon, there is no look-up to test, and each map would have to add 10^10 photons.
     static const std::vector<std::string> kCrowded{"coincident", "underflowing_radius", "all_in_range", "few_places"};
     const bool crowded = std::find(kCrowded.begin(), kCrowded.end(), GetParam()) != kCrowded.end();
     expect_exact(exact_photon_maps(), {make_photon_case(GetParam(), 10'000, crowded ? 10'000 : 1'000'000)});

@@ -1,4 +1,5 @@
-// Photon maps on every backend: exact ones find what brute force finds, and what may not depend on the machine does not.
+// Photon maps on every backend: exact ones find the same photons as brute force, and results that must not depend on the
+// machine do not.
 #include "core/photon_map.h"
 #include "support/device_run.h"
 #include "support/photon_sets.h"
@@ -21,7 +22,7 @@ std::unique_ptr<PhotonMap> open_map(Device& device, const std::string& choice) {
     return map;
 }
 
-// The first backend's that can run it; null where there is none.
+// A device of the first backend that can run the map; null if there is none.
 std::unique_ptr<Device> device_for(const std::string& choice) {
     for (const std::string& backend : usable_backends()) {
         auto device = create_device(backend);
@@ -30,7 +31,7 @@ std::unique_ptr<Device> device_for(const std::string& choice) {
     return nullptr;
 }
 
-// photon_map_long_test has the sizes that count.
+// photon_map_long_test has the sizes that matter.
 TEST(PhotonMap, ExactOnesFindWhatBruteForceFinds) {
     std::vector<std::string> maps = exact_photon_maps();
     maps.emplace_back("brute_force");
@@ -121,7 +122,8 @@ TEST(PhotonMap, MapsAreReusedFromPassToPass) {
     }
 }
 
-// The set's radius is that of the largest query for speed only, but where a structure over the hit points is laid out by it.
+// For speed only, the set's radius is that of the largest query, except in a structure over the hit points, whose layout
+// depends on it.
 TEST(PhotonMap, QueriesMayBeLargerThanTheSetSays) {
     for (const std::string& choice : exact_photon_maps()) {
         SCOPED_TRACE(choice);
@@ -136,7 +138,7 @@ TEST(PhotonMap, QueriesMayBeLargerThanTheSetSays) {
     }
 }
 
-// ray_query=on is refused where the device does not offer it; auto does as the device does with the rays of a scene.
+// ray_query=on is refused if the device does not offer it; auto follows the device's setting for a scene's rays.
 TEST(PhotonMap, RayQueryIsWhatWasAskedFor) {
     const auto bytes = [](Device& device, const char* choice) {
         const auto map = open_map(device, choice);
@@ -180,7 +182,7 @@ TEST(PhotonMap, UnknownNamesAndParametersAreBadInput) {
     EXPECT_EQ(show_photon_map("stochastic_hash", *map)[0], (std::pair<std::string, std::string>("selection", "flux")));
 }
 
-// The direction that comes back is off by less than photon.h says, and exact on the axes.
+// The direction after unpacking has a smaller error than photon.h states, and is exact on the axes.
 TEST(PhotonMap, PackedDirectionsKeepTheirPromise) {
     std::mt19937 random(1);
     std::normal_distribution<float> normal;

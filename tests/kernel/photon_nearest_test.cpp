@@ -1,5 +1,5 @@
-// The nearest photons, on every backend: each structure that hands over all in range finds those that a sort on the host finds, in
-// the same order; and what is made of them is an unbiased density.
+// The nearest photons, on every backend: each structure that passes on all photons in range finds the same ones as a sort on
+// the host, in the same order, and the density computed from them is unbiased.
 #include "core/photon_map.h"
 #include "support/device_run.h"
 #include "support/photon_sets.h"
@@ -44,7 +44,7 @@ std::vector<CollectResult> gather_nearest(Device& device, PhotonMap& map, const 
 
 Found of_result(const CollectResult& result) { return {result.found.x, result.found.y, result.sum.y}; }
 
-// core/kernel/nearest.h says what is found; this is by sorting everything.
+// core/kernel/nearest.h defines what is found; this finds it by sorting everything.
 Found by_sorting(const PhotonCase& photon_case, glm::vec4 query, uint32_t wanted) {
     Found found;
     const float radius = query.w;
@@ -65,7 +65,8 @@ Found by_sorting(const PhotonCase& photon_case, glm::vec4 query, uint32_t wanted
     return found;
 }
 
-// Ties, photons in one place and photons without a neighbour included. Squares that underflow are left out: the host keeps them.
+// Ties, coincident photons and photons without a neighbour included. Squares that underflow are excluded, because the host
+// keeps them.
 TEST(PhotonNearest, AreThoseThatASortFinds) {
     std::vector<PhotonCase> cases;
     for (const std::string& name : photon_case_names()) {
@@ -107,7 +108,7 @@ TEST(PhotonNearest, AreThoseThatASortFinds) {
     }
 }
 
-// What says that it stops early does: of 20,000 photons in range it hands over a few leaves.
+// Structures that claim to stop early do: of 20,000 photons in range, they pass on only a few leaves.
 TEST(PhotonNearest, StructuresThatStopEarlyHandOverFew) {
     const PhotonCase photon_case = make_photon_case("all_in_range", 20'000, 200);
     size_t tested = 0;
@@ -132,9 +133,9 @@ TEST(PhotonNearest, StructuresThatStopEarlyHandOverFew) {
     EXPECT_GT(tested, 0u);
 }
 
-// Photons over the disk estimate the density without bias, whether the radius of the query or the next photon ends it. Squares of
-// 100 photons each, far apart, with one query: false alarms 1e-6 a test. Counting the photon at the rim, too, would be 1/k more:
-// more than five standard errors.
+// The density over the disk is unbiased, whether the query's radius or the next photon ends it. Squares of 100 photons each,
+// far apart, with one query: false alarms 1e-6 per test. Counting the photon at the rim, too, would add 1/k: more than five
+// standard errors.
 TEST(PhotonNearest, DensityIsUnbiased) {
     constexpr uint32_t kSquares = 8000, kPhotons = 100;
     PhotonCase photon_case;
@@ -165,7 +166,7 @@ TEST(PhotonNearest, DensityIsUnbiased) {
             for (const CollectResult& result :
                  gather_nearest(*device, *map, upload_case(*device, photon_case), wanted)) {
                 const double area = M_PI * double(result.sum.y);
-                // A disk wider than the square would have an expectation of its own: there is none.
+                // A disk wider than the square would have a different expectation; there is none.
                 ASSERT_LE(result.sum.y, 0.25f);
                 const bool rim = result.sum.y < radius * radius;
                 full += rim;

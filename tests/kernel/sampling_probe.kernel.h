@@ -1,4 +1,4 @@
-// Asks the sampling routines, for tests: points with their densities, or densities at given points.
+// Calls the sampling routines, for tests: points with their densities, or densities at given points.
 #include "core/kernel/prelude.h"
 #ifndef __cplusplus
 #include "core/kernel/effects.h"
@@ -6,7 +6,7 @@
 #endif
 #include "core/kernel/math.h"
 #include "core/kernel/surface.h"
-// GLSL wants this order.
+// This order is required by GLSL.
 // clang-format off
 #include "core/kernel/random.h"
 #include "core/kernel/bsdf.h"

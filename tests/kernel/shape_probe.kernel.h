@@ -1,4 +1,4 @@
-// Asks a quadric or a patch where a ray meets it, and whether a ray that leaves that point finds the shape again.
+// Computes where a ray hits a quadric or a patch, and whether a ray that leaves that point finds the shape again.
 #include "core/kernel/scene.h"
 
 // rays[3 i ...]: origin, geometry; direction, primitive; direction in which to leave, t_max.

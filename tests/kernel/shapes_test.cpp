@@ -1,4 +1,4 @@
-// Quadrics and bilinear patches: where rays meet them, and the surface there, against their parametric definitions.
+// Quadrics and bilinear patches: the points where rays hit them, and the surface there, against their parametric definitions.
 #include "support/shape_probe.h"
 
 #include <gtest/gtest.h>
@@ -87,7 +87,7 @@ TEST(Shapes, QuadricsAreTheirParametricSurfaces) {
             const ShapeAnswer& a = answers[n];
             const dvec3 chord = rays[n].direction;
             SCOPED_TRACE(::testing::Message() << shape.name << " ray " << n);
-            // Rays that graze the surface at its target may pass by.
+            // Rays that graze the surface at their target may miss it.
             const dvec3 m_normal = glm::dmat3(glm::transpose(glm::inverse(glm::dmat3(shape.to)))) *
                                    quadric_normal(shape.kind, dvec3(glm::inverse(shape.to) *
                                                                     dvec4(dvec3(rays[n].origin) + 2.0 * chord, 1.0)));
@@ -245,7 +245,7 @@ TEST(Shapes, PatchesAreTheirParametricSurfaces) {
             ASSERT_TRUE(a.hit);
             EXPECT_LT(glm::length(dvec3(a.position) - (dvec3(rays[n].origin) + double(a.t) * dvec3(rays[n].direction))),
                       4e-5);
-            if (a.t < 0.999f) continue;  // a saddle is met before the target
+            if (a.t < 0.999f) continue;  // rays hit a saddle before the target
             EXPECT_NEAR(a.t, 1, 1e-4);
             const dvec2 uv = aimed[n];
             dvec3 pu = (1 - uv.y) * dvec3(c.p[1] - c.p[0]) + uv.y * dvec3(c.p[3] - c.p[2]);

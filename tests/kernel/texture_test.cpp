@@ -38,7 +38,7 @@ std::vector<Probe> random_probes(Random& random, uint32_t mode, uint32_t index, 
     return probes;
 }
 
-// Asks every backend for one program at the probes; all must give the same bits, near the reference where it does not jump.
+// Runs one program at the probes on every backend; all must give the same bits, close to the reference unless it jumps there.
 void expect_program(TextureScene& scene, const TextureNode& node, Random& random, double tolerance,
                     const ImageReference& images = {}) {
     const uint32_t program = scene.add_program(postfix(node));
@@ -71,7 +71,7 @@ void set_rows(TextureOp& op, Random& random) {
         *row = {number(random, -1, 1), number(random, -1, 1), number(random, -1, 1), number(random, -1, 1)};
 }
 
-// Its value is (s, t, 0): shows a mapping as it is.
+// Its value is (s, t, 0), which shows the mapping itself.
 TextureNode st_node(uint32_t mapping, Random& random) {
     TextureOp op = operation(kernel::TEXTURE_BILERP, mapping);
     if (mapping == kernel::MAPPING_UV)
@@ -152,7 +152,7 @@ TEST(Texture, Noise) {
     }
 }
 
-// Textures of textures, as large as the host lets through.
+// Textures of textures, as large as the host allows.
 TEST(Texture, RandomTrees) {
     Random random(11);
     const std::function<TextureNode(int)> tree = [&](int levels) -> TextureNode {
@@ -179,7 +179,7 @@ TEST(Texture, RandomTrees) {
     EXPECT_GT(deepest, 7u);
 }
 
-// The deepest stack and the longest program that the layout promises.
+// The deepest stack and the longest program that the layout guarantees.
 TEST(Texture, Limits) {
     Random random(12);
     TextureNode deep = constant_node(random);
@@ -197,7 +197,7 @@ TEST(Texture, Limits) {
     expect_program(other, longest, random, 1e-5);
 }
 
-// A program that does not end is an error, not an image.
+// A program without an end is an error, not an image.
 TEST(Texture, EndlessProgramIsReported) {
     TextureScene scene;
     scene.scene.texture_ops.assign(2 * kernel::TEXTURE_LENGTH, operation(kernel::TEXTURE_CONSTANT));
@@ -212,7 +212,7 @@ TEST(Texture, EndlessProgramIsReported) {
 
 uint32_t bits(float x) { return std::bit_cast<uint32_t>(x); }
 
-// Independent of the host's packing: random codes, and what they mean.
+// Independent of the host's packing: random codes, and the values that they represent.
 PlainImage random_image(TextureScene& scene, Random& random, uint32_t format, uint32_t wrap, uint32_t filtering,
                         uint32_t& index) {
     PlainImage image{5, 4, wrap, filtering, {}};

@@ -1,7 +1,7 @@
 // Every backend's ray tracer finds the same hits: random rays against triangles, quadrics, patches and instances.
 //
-// Tracers round differently at edges, so a share of the rays may differ: at most kTies, of rays that graze an edge or meet
-// two surfaces at one distance. A tracer that loses a primitive or a subtree differs in far more.
+// Tracers round differently at edges, so a share of the rays may differ: at most kTies, of rays that graze an edge or hit two
+// surfaces at the same distance. A tracer that loses a primitive or a subtree differs in far more.
 #include "core/device.h"
 #include "core/error.h"
 #include "core/scene/scene.h"
@@ -129,7 +129,7 @@ struct Backend {
     std::string label;
 };
 
-// All that this machine has; ray query where a Vulkan device offers it.
+// All tracers of this machine; ray query if a Vulkan device offers it.
 std::vector<Backend> tracers() {
     std::vector<Backend> result;
     for (const DeviceInfo& info : list_devices()) {
@@ -255,7 +255,7 @@ TEST(Trace, OnlyInstances) {
     EXPECT_GT(compare(s.finish(), random_rays(random, 5000)), 0.1);
 }
 
-// The walk's comparisons with NaN are false: it must neither look at everything nor go round in a tree that is empty.
+// Comparisons with NaN are false: the traversal must neither visit everything nor loop in an empty tree.
 TEST(Trace, RaysThatAreNotFiniteMeetNothing) {
     Random random(20);
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();

@@ -1,4 +1,4 @@
-// The Khronos validation layers watch the Vulkan backend at work, and have nothing to say; and they are awake.
+// The Khronos validation layers check the Vulkan backend at work, and report nothing; and they are really active.
 #include "backends/vulkan/validation.h"
 #include "core/device.h"
 #include "core/error.h"
@@ -64,7 +64,7 @@ TEST(Validation, LayersAreLoadedAndSeeAWrongCall) {
         << "validation is off unless asked for";
 }
 
-// Device throws where a layer complains, so that not throwing is being clean.
+// Device throws if a layer complains, so no exception means no complaint.
 TEST(Validation, KernelsRunWithoutAMessage) {
     for (const auto& settings : variants()) {
         for (const auto& [key, value] : settings) SCOPED_TRACE(key + "=" + value);
@@ -92,7 +92,7 @@ TEST(Validation, KernelsRunWithoutAMessage) {
             const auto counter = device->create_buffer(4, "counter");
             const NamedBuffer more[] = {{"inputs", rays}, {"results", hits}, {"counters", counter}};
             device->run(*square, nullptr, more, 3, 100);
-            // Structures over boxes that a kernel wrote: built, walked, and built again, larger and smaller.
+            // Structures over boxes that a kernel wrote: built, traversed, and built again, larger and smaller.
             if (!device->offers(DeviceFeature::kBoxes)) return;
             const auto map = create_photon_map("bvh:ray_query=on");
             map->open(*device);
