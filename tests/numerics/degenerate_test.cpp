@@ -1,5 +1,5 @@
-// Scenes that no sane person writes, and generators do: each renders something sane on every backend, or is refused with
-// the place of the mistake. Nothing crashes, hangs, or makes samples that are not finite without telling.
+// Scenes that no sane person writes, but generators do: each renders something sane on every backend, or is refused with the
+// location of the mistake. Nothing crashes, hangs, or silently makes samples that are not finite.
 #include "core/memory.h"
 #include "support/render.h"
 
@@ -14,7 +14,7 @@ enum class Expect {
     kBlack,
     kLit,
     kFinite
-};  // every pixel 0; some pixel above 0; all pixels finite, whatever they show
+};  // every pixel 0; some pixel above 0; all pixels finite, whatever their values
 
 struct Case {
     std::string name;
@@ -38,7 +38,7 @@ std::string repeated(const std::string& text, int times) {
     return all;
 }
 
-// Mixes of mixes, each of the one before.
+// Nested mixes, each containing the one before.
 std::string mixes(int count) {
     std::string text = "MakeNamedMaterial \"m0\" \"string type\" \"diffuse\"\n";
     for (int i = 1; i <= count; ++i) {
@@ -275,7 +275,7 @@ TEST_P(Degenerate, IsRenderedOrRefused) {
     for (const Case& c : cases()) {
         SCOPED_TRACE(c.name);
         if (!c.error.empty()) {
-            if (GetParam() != "cpu") continue;  // no backend is asked
+            if (GetParam() != "cpu") continue;  // refused before any backend is created
             try {
                 render(c, GetParam());
                 ADD_FAILURE() << "rendered without an error that says " << c.error;
@@ -313,8 +313,8 @@ INSTANTIATE_TEST_SUITE_P(Backends, Degenerate, testing::ValuesIn(usable_backends
     return name;
 });
 
-// 100,000 vertices in a white furnace of radiance 1 add up to 100,001, or the driver ended the loop early (Mesa 22 does after
-// 65,535 iterations) and that is told.
+// 100,000 vertices in a white furnace of radiance 1 add up to 100,001, unless the driver ended the loop early (Mesa 22 does
+// after 65,535 iterations), which is then reported.
 TEST_P(Degenerate, AVeryLongPathIsWholeOrAnError) {
     RenderSettings settings;
     settings.backend = GetParam();
@@ -327,14 +327,15 @@ TEST_P(Degenerate, AVeryLongPathIsWholeOrAnError) {
             "Material \"diffuse\" \"rgb reflectance\" [ 1 1 1 ]\n" +
                 kSphere,
             settings);
-        EXPECT_NEAR(room.value(0, 0, 1), 100001.0f, 10.0f);  // 10^5 products, each rounded, walk by about 2e-5
+        EXPECT_NEAR(room.value(0, 0, 1), 100001.0f,
+                    10.0f);  // 10^5 products, each rounded, accumulate an error of about 2e-5
     } catch (const MachineError& error) {
         EXPECT_NE(std::string(error.what()).find("could not finish a loop"), std::string::npos) << error.what();
         EXPECT_EQ(GetParam(), "vulkan") << "no driver ends loops here";
     }
 }
 
-// What would take more memory than there is, is refused before it is asked for.
+// Scenes that need more memory than there is are refused before it is allocated.
 TEST(DegenerateMemory, AHugeFilmIsRefused) {
     Case c{"a huge film", kSky};
     c.film = "Film \"rgb\" \"integer xresolution\" 32768 \"integer yresolution\" 32768\n";

@@ -1,4 +1,4 @@
-// Radiance near the end of a float's range: the image stays finite, and what is lost is counted.
+// Radiance near the end of a float's range: the image stays finite, and samples that are lost are counted.
 #include "support/runs.h"
 
 #include <cmath>
@@ -31,8 +31,8 @@ bool all_finite(const Image& image) {
     return true;
 }
 
-// The sum of four samples of 1e38 is beyond a float: later ones are left out, counted, and located. The sky's pixels show the mean of
-// those that are left, which is right.
+// The sum of four samples of 1e38 does not fit into a float: later samples are left out, counted, and located. The sky's pixels
+// show the mean of the remaining ones, which is right.
 TEST_P(FilmRange, SumsThatOverflowLeaveSamplesOut) {
     for (const auto& [radiance, kept] : {std::pair{"1e38", 3u}, std::pair{"3e38", 1u}}) {
         SCOPED_TRACE(radiance);
@@ -44,7 +44,7 @@ TEST_P(FilmRange, SumsThatOverflowLeaveSamplesOut) {
             const kernel::FilmPixel& pixel = image.pixels[size_t(x)];
             EXPECT_EQ(pixel.counts.x, kPasses);
             EXPECT_EQ(pixel.counts.z, kPasses - kept);
-            EXPECT_EQ(pixel.counts.w, kept);  // the first one that is left out
+            EXPECT_EQ(pixel.counts.w, kept);  // the first sample that is left out
         }
         EXPECT_GE(image.summary.non_finite, 4u * 8u * (kPasses - kept));
         EXPECT_GT(image.summary.unknown_errors, 0u);
@@ -52,7 +52,8 @@ TEST_P(FilmRange, SumsThatOverflowLeaveSamplesOut) {
     }
 }
 
-// Squares end earlier: above 1.8e19 the mean is right, and its error is not known, which a target must not take for reached.
+// Squares overflow earlier: above 1.8e19 the mean is right, but its error is unknown, which must not count as reaching a
+// target.
 TEST_P(FilmRange, SquaresThatOverflowLeaveTheErrorUnknown) {
     const Rendered dim = under_sky("1e17", GetParam(), "path:maxdepth=1");
     EXPECT_EQ(dim.summary.unknown_errors, 0u);
@@ -62,13 +63,13 @@ TEST_P(FilmRange, SquaresThatOverflowLeaveTheErrorUnknown) {
     EXPECT_EQ(bright.summary.non_finite, 0u);
     EXPECT_EQ(bright.summary.unknown_errors, 64u);
     EXPECT_TRUE(std::isnan(bright.summary.estimated_relmse));
-    // But for the scale, both are one picture.
+    // Except for the scale, both pictures are the same.
     for (int y = 0; y < 8; ++y)
         for (int x = 0; x < 8; ++x)
             EXPECT_NEAR(bright.value(x, y, 0) / dim.value(x, y, 0) / 1e8f, 1.0f, 1e-5f) << x << ", " << y;
 }
 
-// The power of a photon overflows before the radiance that it makes: that, too, is counted, not dark.
+// The power of a photon overflows before the resulting radiance does: that, too, is counted instead of being dark.
 TEST_P(FilmRange, PhotonsThatOverflowAreCounted) {
     const Rendered image =
         under_sky("1e37", GetParam(), "sppm:maxdepth=1,direct=photons,photonsperiteration=2000,radius=1");
@@ -77,7 +78,7 @@ TEST_P(FilmRange, PhotonsThatOverflowAreCounted) {
     EXPECT_NEAR(image.value(0, 0, 0) / 1e37f, 1.0f, 1e-6f);
 }
 
-// The sensor and its clamp hold for every integrator: a sky seen from an open floor is 1 without them.
+// The sensor and its clamp apply to every integrator; without them, a sky seen from an open floor is 1.
 TEST_P(FilmRange, EveryIntegratorGoesThroughTheSensor) {
     for (const auto& [film, expected] :
          {std::pair{"\"float maxcomponentvalue\" .25", .25f}, std::pair{"\"float iso\" 50", .5f}}) {

@@ -44,7 +44,8 @@ std::string test_name(const testing::TestParamInfo<std::tuple<std::string, std::
 
 INSTANTIATE_TEST_SUITE_P(Cpu, MovedLongTest,
                          testing::Combine(testing::ValuesIn(scenes()), testing::Values("cpu", "cpu-bvh2")), test_name);
-// Each scene has its own shaders, which lavapipe takes a minute to compile: those with other lights and shapes.
+// Each scene needs shaders of its own, which lavapipe takes a minute to compile, so Vulkan only renders those with special
+// lights and shapes.
 INSTANTIATE_TEST_SUITE_P(Vulkan, MovedLongTest,
                          testing::Combine(testing::Values("analytic/lamp-cylinder", "analytic/lamp-patch",
                                                           "analytic/lamp-spot", "analytic/medium-nested",

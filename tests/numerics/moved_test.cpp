@@ -1,4 +1,4 @@
-// Scenes that were moved by a power of two, camera and all, give the same image: some scenes of scenes/analytic and
+// Scenes that are moved by a power of two, together with the camera, give the same image: some scenes of scenes/analytic and
 // scenes/reference here, all of them in moved_long_test.cpp.
 #include "support/moved.h"
 

@@ -1,7 +1,7 @@
-// Every scene that a damaged file turns into is an error, or renders: parse, build, and a 4x4 render of scenes that hold
-// every shape, material, texture, light, camera and filter, with words taken out, swapped, and numbers replaced by others.
-// The seeds are those of the fuzzer (tests/fuzz/corpus/scene); a round's damage depends on its number alone. More rounds:
-// LAMPYRIS_MUTATION_ROUNDS. Sanitizers watch in a build that has them.
+// Every damaged scene file is either an error or renders: parse, build, and a 4x4 render of scenes that contain every shape,
+// material, texture, light, camera and filter, with words removed or swapped, and numbers replaced. The seeds are those of the
+// fuzzer (tests/fuzz/corpus/scene); the damage of a round depends only on the round's number. LAMPYRIS_MUTATION_ROUNDS sets the
+// number of rounds. Sanitizers check along in a build that has them.
 #include "core/film.h"
 #include "core/integrator.h"
 #include "core/scene/build.h"
@@ -53,7 +53,7 @@ bool is_number(const std::string& word) {
 
 std::string damaged(std::vector<std::string> words, std::mt19937& random) {
     const auto below = [&](size_t n) { return size_t(random() % n); };
-    // Half of the scenes have other numbers only: those get past the parser.
+    // In half of the scenes only numbers are replaced: those get past the parser.
     const bool numbers_only = below(2) == 0;
     for (size_t k = 1 + below(3); k > 0; --k) {
         size_t i = below(words.size());
@@ -72,7 +72,7 @@ std::string damaged(std::vector<std::string> words, std::mt19937& random) {
     return text;
 }
 
-// A run of the whole way. Returns whether there was a picture.
+// Runs all stages. Returns whether there was a picture.
 bool survive(Device& device, const std::string& text, bool skip_unsupported) {
     auto sources = std::make_shared<Sources>();
     Diagnostics diagnostics(*sources);
@@ -123,7 +123,7 @@ TEST(Mutation, DamagedScenesAreErrorsOrRender) {
             ADD_FAILURE() << "round " << round << ": " << error.what() << "\n" << text;
         }
     }
-    // Were all of it errors, or none, the damage would not be the right kind.
+    // If all runs were errors, or none, the damage would not be of the right kind.
     EXPECT_GT(rendered, rounds / 10);
     EXPECT_LT(rendered, rounds * 9 / 10);
 }

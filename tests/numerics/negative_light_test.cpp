@@ -1,5 +1,5 @@
-// Numbers below 0 in images of light are taken for 0, and said: there is no negative light, whichever light has the image, and whatever
-// looks for it.
+// Negative numbers in images of light are set to 0, with a warning: there is no negative light, whichever light has the image,
+// and however it is sampled.
 #include "core/image/image_io.h"
 #include "support/build_text.h"
 #include "support/runs.h"
@@ -39,8 +39,8 @@ class NegativeLightOf : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Kinds, NegativeLightOf, testing::Values("infinite", "projection", "goniometric", "area"),
                          [](const auto& info) { return info.param; });
 
-// A picture with negative numbers makes the very scene, bit by bit, that the picture with zeros makes: its powers, distributions, texels.
-// So no backend, nor any integrator, can tell them apart.
+// A picture with negative numbers makes exactly the same scene as one with zeros, bit by bit: powers, distributions, texels. So
+// no backend or integrator can distinguish them.
 TEST_P(NegativeLightOf, IsTakenForNone) {
     std::vector<float> negative = picture_with_negatives(), clamped = negative;
     size_t count = 0;
@@ -61,16 +61,17 @@ TEST_P(NegativeLightOf, IsTakenForNone) {
     EXPECT_NE(warning.find("light is at least 0"), std::string::npos) << warning;
 }
 
-// An image that only reflects may hold what it likes: reflectances are cut where they are used, and a bump map goes down, too.
+// An image that is only reflected may hold any values: reflectances are clamped where they are used, and a bump map may go
+// down.
 TEST(NegativeLight, ReflectancesAreAnotherMatter) {
     const std::string file = write_picture("reflectance", picture_with_negatives());
     const BuiltText built = build_world("Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"" + file +
                                         "\"\nMaterial \"diffuse\" \"texture reflectance\" \"t\"\nShape \"sphere\"\n" +
                                         light("infinite", file));
-    EXPECT_EQ(built.warnings.size(), 1u);  // of the light alone
+    EXPECT_EQ(built.warnings.size(), 1u);  // only a warning about the light
 }
 
-// Not a number is taken for 0, infinity for the largest number, and both are said.
+// NaN is set to 0, infinity to the largest number, both with a warning.
 TEST(NegativeLight, NumbersThatAreNotFiniteAreReplaced) {
     std::vector<float> rgb(size_t(3 * kSide * kSide), 1.0f);
     rgb[4] = std::nanf("");
@@ -86,7 +87,7 @@ TEST(NegativeLight, NumbersThatAreNotFiniteAreReplaced) {
     }
 }
 
-// Spectra beyond Rec.709's gamut, and negative values of a spectrum, neither.
+// The same holds for spectra beyond Rec.709's gamut, and for negative values of a spectrum.
 TEST(NegativeLight, SpectraMakeNone) {
     for (const char* spectrum :
          {"\"spectrum L\" [ 500 0 510 1 520 0 ]", "\"blackbody L\" 1000", "\"spectrum L\" [ 400 -1 500 1 700 -1 ]"}) {

@@ -1,8 +1,8 @@
-// Which side of a quadric is outside under a mirroring transform (docs/scene-files.md): glass and media as pbrt-v4's rays see it,
-// lamps on the side that pbrt-v4 lights scenes from, by every way in which light is found.
+// Which side of a quadric is outside under a mirroring transform (docs/scene-files.md): for glass and media, the side that
+// pbrt-v4's rays see; for lamps, the side from which pbrt-v4 lights scenes, by every technique that finds light.
 //
-// The shapes are symmetric about the mirror's plane: scenes that must give the same image are the same but for orientation, and
-// random numbers are the same.
+// The shapes are symmetric about the mirror's plane: scenes that must give the same image differ only in orientation, and use
+// the same random numbers.
 #include "support/paired.h"
 
 #include <gtest/gtest.h>
@@ -58,7 +58,7 @@ class OrientationTest : public testing::TestWithParam<std::string> {
     Rendered fog(const std::string& shape) {
         return render(kView + "Material \"interface\" MediumInterface \"fog\" \"\"\n" + shape);
     }
-    // But for rounding, and for a sample or two that it sends another way.
+    // Except for rounding, and for a sample or two whose path rounding changes.
     static double difference(const Rendered& a, const Rendered& b) {
         const Paired found = compare_paired(a, b);
         return std::abs(found.relative_difference) + found.standard_error;
@@ -72,7 +72,7 @@ TEST_P(OrientationTest, MirroredQuadricsScatterInsideOut) {
         EXPECT_FALSE(same(right, reversed)) << shape;
         EXPECT_TRUE(same(right, glass(kReverse + kMirror + shape))) << shape;
         EXPECT_TRUE(same(reversed, glass(kMirror + shape))) << shape;
-        // An instance turns round with what is in it, and so does a mesh.
+        // A mirrored instance turns its contents round, and a mirrored mesh itself.
         EXPECT_TRUE(
             same(right, glass("ObjectBegin \"o\"\n" + shape + "ObjectEnd\n" + kMirror + "ObjectInstance \"o\"\n")))
             << shape;
@@ -91,7 +91,8 @@ TEST_P(OrientationTest, MediaAreWhereTheNormalSays) {
     EXPECT_TRUE(same(reversed, fog(kMirror + kSphere)));
 }
 
-// A floor under a lamp: sampled lights with and without multiple importance sampling, rays that find the lamp by chance, and photons.
+// A floor under a lamp: sampled lights with and without multiple importance sampling, rays that hit the lamp by chance, and
+// photons.
 TEST_P(OrientationTest, MirroredLampsShineAsTheOthers) {
     const auto lit = [](const std::string& lamp) {
         return "LookAt 0 0.8 0  0 0 0  0 0 1\nCamera \"perspective\" \"float fov\" 60\n"
@@ -106,7 +107,7 @@ TEST_P(OrientationTest, MirroredLampsShineAsTheOthers) {
     struct Lamp {
         const char* place;
         const char* shape;
-        double from_inside;  // light that a reversed lamp sends to the floor, as a share
+        double from_inside;  // the share of light that a reversed lamp sends to the floor
     };
     for (const Lamp& lamp : {Lamp{"Translate 0 2 0 ", "Shape \"sphere\"\n", 0.0},
                              Lamp{"Translate 0 2 0 Rotate 90 1 0 0 ", "Shape \"disk\"\n", 0.0}}) {
@@ -118,13 +119,13 @@ TEST_P(OrientationTest, MirroredLampsShineAsTheOthers) {
             EXPECT_GT(right.mean_luminance(), 0.03) << shape;
             const Rendered mirrored = render(lit(place + kMirror + shape), integrator, samples);
             const Paired found = compare_paired(right, mirrored);
-            // The samples are other ones, mirrored.
+            // The samples are different ones: mirrored.
             EXPECT_LT(std::abs(found.relative_difference), 6.0 * found.standard_error + 1e-5) << shape << integrator;
             EXPECT_LT(found.standard_error, 0.03) << shape << integrator;
             for (const std::string& turned : {kReverse + place + shape, kReverse + place + kMirror + shape})
                 EXPECT_EQ(render(lit(turned), integrator, samples).mean_luminance(), 0.0) << turned << integrator;
         }
-        // Looked at, from where it lights and from behind.
+        // Seen from the side that it lights, and from behind.
         const auto seen = [&](const std::string& how, const char* eye) {
             return render("LookAt " + std::string(eye) +
                               "  0 2 0  0 0 1\nCamera \"perspective\" \"float fov\" 2\n"

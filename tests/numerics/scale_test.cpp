@@ -1,5 +1,5 @@
-// A scene and the same scene 10^k times as large give the same image, from the smallest to the largest that are allowed; the
-// next ones are refused. Radiances do not depend on the scale; random numbers are the same.
+// A scene and the same scene scaled by 10^k give the same image, from the smallest to the largest scale that is allowed; the
+// next ones are refused. Radiance does not depend on scale, and the random numbers are the same.
 #include "support/build_text.h"
 #include "support/paired.h"
 
@@ -15,8 +15,8 @@ namespace {
 // Radius about 7, coordinates up to 5 (the floor's corners, tilted): 10^11 times that is below 1e12, 10^-9 times above 1e-9.
 constexpr int kLeast = -9, kMost = 11;
 
-// Everything that has a normal, in positions that no axis is parallel to: a floor of triangles, a bilinear patch, quadrics and
-// instances, under a sky and a lamp.
+// Every shape with a normal, in positions that are not parallel to an axis: a floor of triangles, a bilinear patch, quadrics
+// and instances, under a sky and a lamp.
 std::string scene(int exponent, const std::string& integrator) {
     const double s = std::pow(10.0, exponent);
     return fmt::format(
@@ -57,7 +57,7 @@ class ScaleTest : public testing::TestWithParam<std::string> {
             const Paired found = compare_paired(ordinary, scaled);
             fmt::print("{:9} 10^{:<3} {:+.1e} (+- {:.1e})\n", GetParam(), exponent, found.relative_difference,
                        found.standard_error);
-            // Rounding, and a sample or two that it sends to the other side of an edge.
+            // Rounding, and a sample or two that rounding moves to the other side of an edge.
             EXPECT_LT(std::abs(found.relative_difference), 1e-5 + 6.0 * found.standard_error) << "10^" << exponent;
             EXPECT_LT(found.standard_error, 1e-3) << "10^" << exponent;
         }

@@ -1,9 +1,10 @@
-// Shadow rays end where their light is, wherever the scene lies: no lamp hides its own light, nothing before it is missed.
+// Shadow rays end at their light, wherever the scene lies: no lamp occludes its own light, and no occluder in front of it is
+// missed.
 //
-// Far from the world's origin positions have an absolute error of eps |p|, eps half a unit in the last place. A lamp of size r
-// is rounded to one of r +- 2 eps |p|, its height h to h +- 2 eps |p|; the light on the floor below follows their squares. So
-// the image of a scene that was moved to p differs by no more than kShare eps |p| / r, r the smallest length in it, from that at
-// the origin: the random numbers are the same, and there is no noise.
+// Far from the world's origin, positions have an absolute error of eps |p|, eps half a unit in the last place. A lamp of size r
+// is rounded to one of r +- 2 eps |p|, its height h to h +- 2 eps |p|, and the light on the floor below depends on their
+// squares. So the image of a scene that was moved to p differs from that at the origin by at most kShare eps |p| / r, where r
+// is the smallest length in it: the random numbers are the same, so there is no noise.
 #include "support/paired.h"
 
 #include <fmt/format.h>
@@ -20,8 +21,8 @@ constexpr double kEps = 5.9604645e-8, kShare = 16.0;
 constexpr int kPixels = 8;  // a station's
 constexpr double kSmallest = 0.05;
 
-// Each station is a floor, one unit wide, with a lamp 0.1 above it and a black hood over that. Lamps send nothing to other
-// stations that matters: they are small and far.
+// Each station is a floor, one unit wide, with a lamp 0.1 above it and a black hood over that. Light of lamps at other stations
+// is negligible: they are small and far.
 const std::vector<std::pair<const char*, std::string>>& lamps() {
     static const std::vector<std::pair<const char*, std::string>> all{
         {"triangles",
@@ -48,8 +49,9 @@ const std::vector<std::pair<const char*, std::string>>& lamps() {
 
 const std::string kFloor =
     "Shape \"trianglemesh\" \"point3 P\" [ -.5 0 -.5 -.5 0 .5 .5 0 .5 .5 0 -.5 ] \"integer indices\" [ 0 1 2 0 2 3 ]\n";
-// All stations in a row along x, moved by `by`. An anchor at -by, out of sight, keeps the middle of the scene at the origin, so that
-// the scene is not moved back (recentre.h). `covered`: a mask that all rays pass and a drop of a medium without a surface are in the way.
+// All stations in a row along x, moved by `by`. An anchor at -by, out of sight, keeps the middle of the scene at the origin, so
+// that the scene is not moved back (recentre.h). `covered`: a mask that all rays pass, and a drop of a medium without a
+// surface, are in between.
 std::string stations(std::array<double, 3> by, bool covered) {
     const int count = int(lamps().size()) + 1;
     const double half = count / 2.0;
@@ -128,7 +130,7 @@ TEST_P(ShadowRayTest, LampsDoNotHideTheirOwnLight) { expect_same(false); }
 
 TEST_P(ShadowRayTest, NorBehindMasksAndMedia) { expect_same(true); }
 
-// The case that was reported: 11 % of the light was left.
+// The case that was reported: only 11 % of the light remained.
 TEST_P(ShadowRayTest, ALampCloseToAFloor) {
     const auto scene = [](double height) {
         return fmt::format(
@@ -146,8 +148,8 @@ TEST_P(ShadowRayTest, ALampCloseToAFloor) {
     EXPECT_NEAR(compare_paired(here, there).relative_difference, 0.0, kShare * kEps * 30 / 0.1);
 }
 
-// A lamp above the corner of a triangle 10^3 and 10^4 times as large as what is seen, in a position across no axis: from a vertex far
-// away tracers find the plane with an error that the corner's own coordinates do not tell. 40 % of the light was left.
+// A lamp above the corner of a triangle 10^3 and 10^4 times as large as the visible part, oblique to all axes. From a distant
+// vertex, tracers find the plane with an error that does not show in the corner's own coordinates. 40 % of the light remained.
 TEST_P(ShadowRayTest, TheCornersOfLargeTrianglesAreLit) {
     const auto scene = [](double size, int first) {
         const std::array<std::array<double, 3>, 3> corners{{{0, 0, 0}, {0, 0, size}, {size, 0, 0}}};
@@ -173,7 +175,7 @@ TEST_P(ShadowRayTest, TheCornersOfLargeTrianglesAreLit) {
                 << size << ", from corner " << first;
 }
 
-// A plate in front of the lamp, or upon the floor, at a distance of 1e-5 of the ray's length: nothing passes.
+// A plate directly before the lamp, or directly above the floor, at a distance of 1e-5 of the ray's length: no light passes.
 TEST_P(ShadowRayTest, NothingPassesAPlateCloseToEitherEnd) {
     for (const char* lamp :
          {"Shape \"trianglemesh\" \"point3 P\" [ -1 0 -1 1 0 -1 1 0 1 -1 0 1 ] \"integer indices\" [ "
@@ -213,8 +215,8 @@ TEST_P(ShadowRayTest, ASphereLightsWhatItTouches) {
     EXPECT_NEAR(image.mean_luminance(), 0.5 / (d * d), 0.028);
 }
 
-// A lamp in a closed black box that fits it closely lights nothing: also not at its rims, along rays that graze it and would end
-// beside the box's wall if they were cut short by an offset over a cosine.
+// A lamp in a closed black box that fits it closely lights nothing: not even at its rims, along grazing rays, which would end
+// beside the box's wall if they were shortened by an offset over a cosine.
 TEST_P(ShadowRayTest, NothingLeavesAClosedBox) {
     const std::string cube =
         "Shape \"trianglemesh\" \"point3 P\" [ -1 -1 -1 1 -1 -1 1 1 -1 -1 1 -1 -1 -1 1 1 -1 1 1 1 1 -1 1 1 ] \"integer "
@@ -247,7 +249,8 @@ TEST_P(ShadowRayTest, NothingLeavesAClosedBox) {
     }
 }
 
-// Under a ceiling 0.99 away, directions within acos(0.99) meet it before 1: by the cosine a share of 1 - 0.99^2. Beyond 1, none.
+// Under a ceiling at height 0.99, directions within acos(0.99) hit it before distance 1: cosine-weighted, a share of 1 -
+// 0.99^2. Beyond distance 1, none.
 TEST_P(ShadowRayTest, AmbientOcclusionSeesToItsEnd) {
     const auto seen = [&](double ceiling) {
         return render(fmt::format("LookAt 0 0.5 0  0 0 0  0 0 1\n"

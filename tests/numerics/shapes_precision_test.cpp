@@ -1,7 +1,8 @@
 // Rounding in shape intersection, against long double: tiny and huge shapes, far from the ray and from the world's origin.
 //
-// Unit of error: eps M, eps half a unit in the last place and M the size of the numbers that the ray's origin is made of in
-// the shape's space, in radii. Nothing can do better than a small multiple of it; formulas that cancel lose M times more.
+// Unit of error: eps M, with eps half a unit in the last place and M the size, in radii, of the numbers from which the ray's
+// origin in the shape's space is computed. No formula can be better than a small multiple of it; formulas with cancellation
+// lose M times more.
 #include "support/shape_probe.h"
 
 #include <gtest/gtest.h>
@@ -89,7 +90,7 @@ TEST(ShapesPrecision, HitsAreWithinAFewRoundingErrors) {
                 const long double r = kind == kernel::GEOMETRY_DISK ? g.params.y : g.params.x;
                 const Long3 o = transform(m.from0, m.from1, m.from2, Long3(ray.origin), 1) / r;
                 const Long3 d = transform(m.from0, m.from1, m.from2, Long3(ray.direction), 0) / r;
-                // The size of what o is the sum of.
+                // The size of the terms whose sum is o.
                 const Long3 size =
                     transform(glm::abs(m.from0), glm::abs(m.from1), glm::abs(m.from2), Long3(glm::abs(ray.origin)), 1) /
                     r;
@@ -178,7 +179,7 @@ TEST(ShapesPrecision, RaysLeaveTheSurfaceThatTheyStartFrom) {
                     ++outside;
                     EXPECT_FALSE(answers[i].again);
                 } else if (kind == kernel::GEOMETRY_SPHERE) {
-                    // The chord against what the rounding of the surface point may cut off it.
+                    // The length of the chord, compared with the part that the rounding of the surface point may cut off.
                     const double chord = -2 * cosines[i];
                     const double noise = 64 * kEps * (1 + setup.scale_of[i].translation);
                     if (chord < 0.05 * std::sqrt(noise)) continue;

@@ -1,5 +1,6 @@
-// Meshes with normals or texture coordinates that are not finite: the faces that use them are rendered as those of a mesh without,
-// as pbrt-v4 shades a triangle whose interpolated normal is NaN; all others keep theirs. Equal means to the bit.
+// Meshes with normals or texture coordinates that are not finite: faces that use them are rendered as those of a mesh without
+// them, as pbrt-v4 shades a triangle whose interpolated normal is NaN; all other faces keep theirs. Equal means equal to the
+// bit.
 #include "support/build_text.h"
 #include "support/render.h"
 #include "support/temporary_folder.h"

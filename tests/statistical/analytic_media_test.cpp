@@ -1,4 +1,4 @@
-// Media that absorb, against Beer and Lambert's law (scenes/analytic/medium-*; each scene's comment derives its image).
+// Absorbing media, against the Beer-Lambert law (scenes/analytic/medium-*; each scene's comment derives its image).
 #include "support/analytic.h"
 
 namespace lampyris::test {
@@ -6,7 +6,7 @@ namespace {
 
 using Sigma = std::array<double, 3>;  // absorption per distance and channel
 
-// How much longer than along the axis the way through a layer is: rays of the perspective scenes pass (px, py, 1).
+// The length of a ray's path through a layer, relative to that along the axis: rays of the perspective scenes pass (px, py, 1).
 double obliqueness(double x, double y, double width) {
     return std::sqrt(1.0 + std::pow(2.0 * x / width - 1.0, 2.0) + std::pow(2.0 * y / width - 1.0, 2.0));
 }
@@ -33,7 +33,7 @@ TEST_P(AnalyticTest, MediaNestAroundTheCamera) {
         kBound);
 }
 
-// The distance from the axis that a pixel of the orthographic scenes looks at.
+// The distance from the axis of a pixel of the orthographic scenes.
 double from_axis(double x, double y, double width) { return std::hypot(2.0 * x / width - 1.0, 2.0 * y / width - 1.0); }
 
 TEST_P(AnalyticTest, SpheresAbsorbAlongTheirChords) {
@@ -69,13 +69,14 @@ TEST_P(AnalyticTest, ColouredGlassAbsorbsBetweenReflections) {
         0.02);
 }
 
-// What the slabs of medium-shadow and medium-sun leave of light whose way through them is `slant` times their thickness.
+// The share of light that the slabs of medium-shadow and medium-sun transmit, if the path through them is `slant` times their
+// thickness.
 double through_slabs(double slant, int c) {
     const Sigma outer{1.0, 2.0, 4.0}, inner{8.0, 4.0, 2.0};
     return std::exp(-slant * (0.15 * outer[size_t(c)] + 0.05 * inner[size_t(c)]));
 }
 
-// The floor of medium-shadow or medium-inside, clear of media at first.
+// The floor of medium-shadow or medium-inside, at first without media.
 class PointLightInMediaTest : public AnalyticTest {
  protected:
     static glm::dvec3 to_light(glm::dvec3 p) { return glm::dvec3(0.3, 0.9, -0.2) - p; }
@@ -105,8 +106,8 @@ TEST_P(PointLightInMediaTest, ShadowRaysPassMedia) {
     }
 }
 
-// 1.3 million photons, of which about a fifth land where the camera looks. The sum's noise is 0.4 % (from three seeds of the
-// same scene without media); the bound is six times that, and a medium that was forgotten is off by 10 % and more.
+// 1.3 million photons, of which about a fifth land in view. The sum's noise is 0.4 % (from three seeds of the same scene
+// without media); the bound is six times that, and forgetting a medium changes it by 10 % or more.
 TEST_P(PointLightInMediaTest, PhotonsPassMedia) {
     const auto expect_total = [&](const char* scene, const Expected& expected) {
         const Rendered& image =

@@ -34,7 +34,7 @@ TEST_P(AnalyticTest, SphereAroundAPointLightIsUniform) {
     expect_mean(constant(1.0), 0.02);
 }
 
-// Without roulette every path adds up the same series, as long as it is.
+// Without roulette, every path adds up the same series, whose length is the path's.
 TEST_P(AnalyticTest, SphereAroundAPointLightHasNoNoiseWithoutRoulette) {
     render("sphere-point", 1, "path:maxdepth=24,rrdepth=1000");
     expect_exact(constant(1.0 - std::ldexp(1.0, -24)), 2e-5);
@@ -89,7 +89,7 @@ double polygon_irradiance(const std::vector<glm::dvec3>& corners, glm::dvec3 p) 
     return std::abs(sum) / 2.0;
 }
 
-// Configuration factor of a parallel disk at height h, sideways by a (scenes/analytic/lamp-disk.pbrt).
+// Configuration factor of a parallel disk at height h, with a lateral offset a (scenes/analytic/lamp-disk.pbrt).
 double disk_factor(double radius, double height, double aside) {
     const double h2 = aside * aside / (height * height), r2 = radius * radius / (height * height), z = 1.0 + h2 + r2;
     return 0.5 * (1.0 - (z - 2.0 * r2) / std::sqrt(z * z - 4.0 * h2 * r2));

@@ -1,5 +1,5 @@
 // backends_test at the full size of the pictures and with 512 samples per pixel, the larger scenes with one, and photon mapping
-// everywhere: minutes.
+// in all scenes: takes minutes.
 #include "support/agreement.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// The same scene with the same seed on different backends: one kernel source, one image. What may differ, and why, is told in
-// docs/determinism.md. No chance is involved: seeds are fixed.
+// The same scene with the same seed on different backends: one kernel source, one image. docs/determinism.md explains which
+// differences are possible, and why. Nothing is random: seeds are fixed.
 #include "support/agreement.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, BackendsTest,
                              return test_name(std::get<0>(info.param) + "_" + std::get<1>(info.param));
                          });
 
-// Many samples: what diverges in a few of them moves the pixel a little.
+// Many samples, so that the few that diverge change a pixel only a little.
 class ManySamplesTest : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
 
 TEST_P(ManySamplesTest, PixelsAreTheSame) {
@@ -48,8 +48,8 @@ INSTANTIATE_TEST_SUITE_P(
                      testing::ValuesIn(other_backends())),
     [](const auto& info) { return test_name(std::get<0>(info.param) + "_" + std::get<1>(info.param)); });
 
-// Photon mapping stores photons in one order here and in another there, and sums them in the order of their keys. A photon that takes
-// another way at an edge changes the hit points around it.
+// Photon mapping stores photons in a different order on each backend, and sums them in the order of their keys. A photon that
+// takes a different path at an edge changes the hit points around it.
 class PhotonMappingTest : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
 
 TEST_P(PhotonMappingTest, TwoPassesAreTheSame) {
@@ -62,7 +62,7 @@ TEST_P(PhotonMappingTest, TwoPassesAreTheSame) {
     expect_agreement(scene, backend, settings, 1e-5, 0.999);
 }
 
-// What makes a GPU's images equal must not change those of a device that divides exactly by itself.
+// The option that makes a GPU's images equal must not change those of a device that divides exactly by itself.
 TEST(BackendsExactTest, QuotientsByIntegersAreTheSame) {
     const auto others = other_backends();
     if (std::find(others.begin(), others.end(), "vulkan") == others.end()) GTEST_SKIP() << "no Vulkan device";

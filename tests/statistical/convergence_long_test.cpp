@@ -1,5 +1,5 @@
-// convergence_test for three values of alpha, with more seeds and passes. "These passes" are what the radii of the passes that were fitted
-// say; for n to infinity they tend to the limit.
+// convergence_test for three values of alpha, with more seeds and passes. The prediction for "these passes" follows from the
+// radii of the fitted passes; for n to infinity it tends to the limit.
 #include "support/convergence.h"
 
 #include <gtest/gtest.h>

@@ -1,10 +1,10 @@
-// Bias and variance of memoryless progressive photon mapping fall as theory says where radiance is smooth: variance as
+// Bias and variance of memoryless progressive photon mapping fall as theory predicts where radiance is smooth: variance as
 // n^-alpha, squared bias as n^-(2 - 2 alpha) (Knaus and Zwicker 2011; Kaplanyan and Dachsbacher 2013).
 //
-// After n passes the mean of the radii is not yet what it tends to: the slopes of finite sums, which the test computes, are e.g. -0.62
-// between 32 and 1024 passes where the limit is -2/3. Slopes are within 5 standard errors of those (6e-7 each, as normal variables).
-// Bias and variance are measured apart: photons of a Sobol sequence have the same bias and a hundredth of the noise, independent ones
-// the variance that theory speaks of.
+// After n passes, the mean of the radii has not reached its asymptotic behaviour: the slopes of finite sums, which the test
+// computes, are e.g. -0.62 between 32 and 1024 passes, where the limit is -2/3. Measured slopes are within 5 standard errors of
+// those (6e-7 each, as normal variables). Bias and variance are measured separately: photons of a Sobol sequence have the same
+// bias and a hundredth of the noise; independent photons have the variance of the theory.
 #include "support/convergence.h"
 
 #include <gtest/gtest.h>
@@ -53,7 +53,7 @@ TEST(Convergence, TheStatedConfidenceHoldsWhereRadianceIsSmooth) {
     }
 }
 
-// And the bias that is estimated is the bias that there is.
+// The estimated bias is the true bias.
 TEST(Convergence, TheEstimatedBiasIsRight) {
     const BiasEstimate bias = measure_bias(32, 32);
     EXPECT_LT(std::abs(bias.estimated.value() - bias.expected),

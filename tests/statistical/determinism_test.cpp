@@ -1,5 +1,5 @@
-// An image is a function of scene, seed and settings: not of threads, of how passes are cut into dispatches, or of the window
-// that is rendered. Equal means equal to the bit, for every number that the film holds; no tolerance, no false alarms.
+// An image is a function of scene, seed and settings: it does not depend on threads, on how passes are split into dispatches,
+// or on the window that is rendered. Equal means equal to the bit, for every number in the film; no tolerance, no false alarms.
 #include "support/render.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ class DeterminismTest : public testing::TestWithParam<std::string> {
         return render_file(std::string(LAMPYRIS_SOURCE_DIR) + "/scenes/reference/thin-lens.pbrt", settings);
     }
 
-    // Odd sizes, so that blocks of work are cut at the edges; a number of samples that is no power of two.
+    // Odd sizes, so that blocks of work are cut at the edges; a number of samples that is not a power of two.
     static RenderSettings settings() {
         RenderSettings s;
         s.backend = GetParam();
@@ -69,7 +69,7 @@ TEST_P(DeterminismTest, WindowsShowTheSamePixels) {
                 << x << ", " << y;
 }
 
-// One sample of one pixel, alone, is what it was among the others; all of them sum up to the pixel.
+// A single sample of one pixel, rendered alone, is the same as among the others; all of them add up to the pixel.
 TEST_P(DeterminismTest, ReplayShowsThePixelsSamples) {
     RenderSettings s = settings();
     const Rendered whole = render(s);
@@ -97,7 +97,7 @@ TEST_P(DeterminismTest, SeedsDiffer) {
     const Rendered a = render(s);
     s.seed = 4712;
     const Rendered b = render(s);
-    size_t different = 0, lit = 0;  // outside of the room there is nothing to differ
+    size_t different = 0, lit = 0;  // outside of the room, nothing can differ
     for (size_t i = 0; i < a.pixels.size(); ++i) {
         different += a.pixels[i].sum != b.pixels[i].sum;
         lit += a.pixels[i].sum.x > 0.0f || b.pixels[i].sum.x > 0.0f;

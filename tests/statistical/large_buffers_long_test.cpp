@@ -1,5 +1,5 @@
-// large_buffers_test at the sizes that people ask for: films, scenes and photons beyond the largest binding of lavapipe (134 MB), against
-// the CPU. Up to 3 GB of memory, five to fifteen minutes.
+// large_buffers_test at sizes that occur in practice: films, scenes and photons beyond the largest binding of lavapipe (134
+// MB), against the CPU. Up to 3 GB of memory, five to fifteen minutes.
 #include "support/agreement.h"
 #include "support/temporary_folder.h"
 
@@ -19,7 +19,7 @@ bool has_vulkan() {
     return std::find(names.begin(), names.end(), "vulkan") != names.end();
 }
 
-// What the backends' tests of small pictures ask for.
+// The effects that the backends' tests of small pictures need.
 void expect_same(const std::string& text, RenderSettings settings, const std::string& directory = ".") {
     settings.backend = "cpu";
     const Rendered cpu = render_text(text, settings, directory);
@@ -118,7 +118,7 @@ Shape "trianglemesh" "point3 P" [ -2 0 -4  2 0 -4  2 0 2  -2 0 2  -2 3 -4  2 3 -
                 settings);
 }
 
-// Without the one that tests each of some 10^10 pairs.
+// Without brute force, which would test some 10^10 pairs.
 std::vector<std::string> maps() {
     std::vector<std::string> names = photon_maps().names();
     std::erase(names, "brute_force");

@@ -1,5 +1,5 @@
-// Buffers that a device cannot bind are read by their addresses: with the limit lowered, small scenes take that way for the film, the
-// scene and everything that copies photons, and make the same image to the bit as with all buffers bound.
+// Buffers that a device cannot bind are accessed by their addresses: with a lower limit, small scenes access the film, the
+// scene and all copies of photons like this, and make the same image to the bit as with all buffers bound.
 #include "backends/vulkan/addresses.h"
 #include "backends/vulkan/shader_compiler.h"
 #include "core/error.h"
@@ -79,7 +79,7 @@ INSTANTIATE_TEST_SUITE_P(All, LargeBuffers, testing::ValuesIn(cases()), [](const
     return test::name_of(integrator.substr(0, integrator.find(':')) + "_" + info.param.map);
 });
 
-// Each structure, its atomics included, finds the same photons; to the bit where their order is fixed.
+// Each structure, including those with atomics, finds the same photons; to the bit if their order is fixed.
 TEST(LargeBuffersOfMaps, HoldTheSamePhotons) {
     if (!has_vulkan()) GTEST_SKIP() << "no Vulkan device";
     const test::PhotonCase photon_case = test::make_photon_case("random", 3000, 300);
@@ -114,7 +114,7 @@ TEST(LargeBuffersOfMaps, HoldTheSamePhotons) {
     }
 }
 
-// Every buffer of a kernel by address, is valid SPIR-V, before the optimizer and after it.
+// With every buffer of a kernel accessed by address, the SPIR-V is valid, before and after the optimizer.
 TEST(LargeBuffersCode, IsValid) {
     spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_2);
     std::string said;
@@ -149,8 +149,8 @@ TEST(LargeBuffersSetting, IsANumberOfBytes) {
     }
 }
 
-// A buffer of more than the device's own limit, whatever that is: the last word, and one beyond the limit, are reached. No memory for it
-// is no failure of addresses, but lavapipe's limit is small.
+// In a buffer larger than the device's own limit, the last word and one beyond the limit can be accessed. If there is not
+// enough memory for it, addresses have not failed; but lavapipe's limit is small.
 TEST(LargeBuffersOfDevices, ReachTheLastWord) {
     if (!has_vulkan()) GTEST_SKIP() << "no Vulkan device";
     const auto device = create_device("vulkan");

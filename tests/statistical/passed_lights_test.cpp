@@ -1,4 +1,4 @@
-// Area lights of constant alpha 0: they emit, and no ray meets them, as in pbrt-v4.
+// Area lights of constant alpha 0: they emit, and no ray hits them, as in pbrt-v4.
 //
 // False alarms: 9e-7 a mean (support/rare_lights.h), 8 means, fixed seeds.
 #include "support/build_text.h"
@@ -26,7 +26,7 @@ std::string floor_under(const std::string& light, const std::string& alpha, doub
         eye_height, light, alpha);
 }
 
-// Radiance over a sphere fills its solid angle as a disk of the same outline does: E = pi r^2 / d^2 cos.
+// A sphere's radiance fills the same solid angle as a disk with the same outline: E = pi r^2 / d^2 cos.
 double floor_radiance() {
     constexpr int kGrid = 60;
     double sum = 0.0;
@@ -38,7 +38,7 @@ double floor_radiance() {
     return sum / (kGrid * kGrid);
 }
 
-// A texture that is 0 everywhere is that number.
+// A texture that is 0 everywhere counts as that number.
 TEST(PassedLight, IsToldByItsAlpha) {
     const auto flags = [](const std::string& alpha) {
         const BuiltText built = build_world(
@@ -57,8 +57,8 @@ TEST(PassedLight, IsToldByItsAlpha) {
 }
 
 TEST_P(PassedLights, SphereLightsTheFloorAndHidesNothing) {
-    // Through the lamp's near side comes what its far side sends inwards: twice as much of a lamp with two sides. One that is half
-    // there, and seen from below it, adds half of the half that passes its near side.
+    // Through the lamp's near side comes the light that its far side emits inwards: twice as much for a lamp with two sides. A
+    // lamp with alpha 1/2, seen from below, adds half of the half that passes its near side.
     struct Lamp {
         const char *light, *alpha;
         double eye_height, sides;
@@ -70,7 +70,7 @@ TEST_P(PassedLights, SphereLightsTheFloorAndHidesNothing) {
         const std::string text = floor_under(lamp.light, lamp.alpha, lamp.eye_height);
         const double expected = lamp.sides * floor_radiance();
         expect_mean_of_runs(text, GetParam(), "path:maxdepth=1", 32, expected, 0.0, 0.1);
-        // The disk of a look-up sees the mean over it.
+        // The disk of a look-up averages over its area.
         expect_mean_of_runs(text, GetParam(), "sppm:maxdepth=1,direct=photons,photonsperiteration=20000,radius=0.1", 1,
                             expected, 0.005, 0.1);
         if (lamp.sides > 1.0)
@@ -79,8 +79,8 @@ TEST_P(PassedLights, SphereLightsTheFloorAndHidesNothing) {
     }
 }
 
-// pbrt-v4's mean of this picture as a file of sRGB numbers is 0.045, to three decimals: a sphere lit by a lamp in the picture, which is
-// not seen.
+// pbrt-v4's mean of this picture, from a file of sRGB numbers, is 0.045, to three decimals: a sphere lit by a lamp inside
+// of the picture, which is not visible itself.
 TEST_P(PassedLights, PictureIsPbrts) {
     const std::string text =
         "LookAt 0 0 5 0 0 0 0 1 0\nCamera \"perspective\" \"float fov\" 40\nFilm \"rgb\" \"integer xresolution\" 64 "

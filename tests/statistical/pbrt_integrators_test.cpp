@@ -1,6 +1,5 @@
-// Scenes that name an integrator of pbrt-v4: what renders in its place gives the same numbers, to the bit, as that integrator
-// asked for by its own name; and these are the right ones. False alarms: 6e-7 for each mean (five standard errors), in all below
-// 4e-6.
+// Scenes that name an integrator of pbrt-v4: its replacement gives the same numbers, to the bit, as when it is requested by its
+// own name, and these numbers are right. False alarms: 6e-7 for each mean (five standard errors), below 4e-6 in all.
 #include "core/integrator.h"
 #include "core/pbrt_integrators.h"
 #include "support/build_text.h"
@@ -81,8 +80,8 @@ TEST_P(PbrtIntegrators, OthersKeepTheirDepth) {
     }
 }
 
-// From a point of the sphere, what lies in the direction at the angle a to the normal is 2 cos a away: beyond a distance d lies
-// the share 1 - d^2 / 4 of all directions, weighted with the cosine.
+// Seen from a point of the sphere, the surface in the direction at angle a to the normal is at distance 2 cos a: beyond a
+// distance d lies the share 1 - d^2 / 4 of all directions, weighted with the cosine.
 TEST_P(PbrtIntegrators, AmbientOcclusionIsAo) {
     const std::string line = "Integrator \"ambientocclusion\" \"bool cossample\" true \"float maxdistance\" 1";
     const auto ball = [](const std::string& integrator) {
@@ -95,7 +94,7 @@ TEST_P(PbrtIntegrators, AmbientOcclusionIsAo) {
     expect_mean(render(ball("Integrator \"ambientocclusion\"")), 0.0);
 }
 
-// A plane lamp behind a metre of a medium that leaves exp(-2) of its light, or all of it where media are left out.
+// A plane lamp behind a metre of a medium that transmits exp(-2) of its light, or all of it if media are ignored.
 std::string tinted(const std::string& integrator, bool medium, const std::string& sigma = "0 0 0") {
     const std::string define =
         "MakeNamedMedium \"tea\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 2 2 2 ] \"rgb "
@@ -124,7 +123,7 @@ TEST_P(PbrtIntegrators, MediaCanBeLeftOut) {
     expect_mean(clear, 1.0);
     const std::string off = "Integrator \"path\" \"string media\" \"off\"";
     EXPECT_TRUE(same(clear, render(tinted(off, true), "", 4)));
-    // pbrt-v4's path renders media that scatter as if there were none.
+    // pbrt-v4's path renders scattering media as if there were none.
     EXPECT_TRUE(same(clear, render(tinted(off, true, "1 1 1"), "", 4)));
 }
 

@@ -1,4 +1,4 @@
-// As photon_choices_test, with masks and mixes by textures on backends whose compiler takes long over them.
+// Like photon_choices_test, with textured masks and mixes on backends whose compiler takes long for them.
 #include "support/choices_floor.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Choices by chance that a photon and an eye path both meet: which material a mix shows, and whether a mask lets a ray pass.
-// They belong to the surface once, and must not be drawn twice; in closed forms, and against path tracing.
+// Random choices that a photon and an eye path both encounter: which material a mix shows, and whether a mask lets a ray pass.
+// Each must be made only once per surface, not by both; tested by closed forms, and against path tracing.
 //
 // False alarms: each test has a rate of 1e-6 or less a tile or mean, at fixed seeds.
 #include "support/choices_floor.h"
@@ -18,7 +18,7 @@ class PhotonChoices : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Backends, PhotonChoices, testing::ValuesIn(usable_backends()),
                          [](const auto& info) { return name_of(info.param); });
 
-// With photons as direct light. A disc of radius 0.008 lies in the pixels of 0.025 about it.
+// With photons as direct light. A disc of radius 0.008 lies in the pixels of 0.025 around it.
 TEST_P(PhotonChoices, AreMadeOnce) {
     const std::string scene = floor_scene(GetParam() != "vulkan");
     for (const char* integrator :
@@ -30,12 +30,12 @@ TEST_P(PhotonChoices, AreMadeOnce) {
     }
 }
 
-// The same scene by path tracing, which meets each choice once.
+// The same scene by path tracing, which makes each choice once.
 TEST(PhotonChoicesOfPaths, AreMadeOnce) {
     expect_tiles(render_text(floor_scene(true), settings_of("cpu", "path:maxdepth=1", 256, 0)), 0.02);
 }
 
-// Hit points of ppm stay, and with them what they met: 256 of them a pixel, and few passes.
+// Hit points of ppm are kept, and so are their choices: 256 of them per pixel, and few passes.
 TEST_P(PhotonChoices, AreMadeOnceWhereHitPointsStay) {
     RenderSettings settings = settings_of(
         GetParam(), "ppm:maxdepth=1,direct=photons,radius=0.008,photonsperiteration=100000,schedule=memoryless,alpha=1",
@@ -44,9 +44,9 @@ TEST_P(PhotonChoices, AreMadeOnceWhereHitPointsStay) {
     expect_tiles(render_text(floor_scene(GetParam() != "vulkan"), settings), 0.025);
 }
 
-// A closed box of albedo 1/2 that sends 1 shows 2 everywhere (analytic/box-half), also where something hangs in it that absorbs
-// nothing: here boards of albedo 1, one half transparent by a mask, one half glass by a mix. Light arrives by bounces, of photons or
-// of gather rays. 1 % is allowed for discs that reach past an edge, as there.
+// A closed box of albedo 1/2 that emits 1 shows 2 everywhere (analytic/box-half), even if objects hang in it that absorb
+// nothing: here boards of albedo 1, one half transparent by a mask, one half glass by a mix. Light arrives by bounces, of
+// photons or of gather rays. 1 % is allowed for discs that extend past an edge, as there.
 std::string box_scene() {
     std::string text =
         "LookAt 0 0 -0.9  0 0 1  0 1 0\n"
@@ -87,14 +87,15 @@ TEST_P(PhotonChoices, KeepTheLightOfAClosedBox) {
             settings.seed = seed;
             mean.add(render_text(scene, settings).mean_luminance());
         }
-        // t distribution of 5 degrees of freedom: 22 standard errors at 1e-6 would be as blind as a floor is strict.
+        // With a t distribution of 5 degrees of freedom, 1e-6 would need 22 standard errors, and detect nothing; so there is a
+        // floor instead.
         EXPECT_LT(std::abs(mean.value() - 2.0), 0.02 + 5.0 * std::max(mean.error(), 0.004)) << mean.value();
         EXPECT_LT(mean.error(), 0.02);
     }
 }
 
-// Whether a surface is followed or gathered may depend on a texture finer than the radius: photons are kept all over it. Against
-// path tracing; a floor of metal under a sky, whose roughness is that of a mirror on every other square.
+// Whether a surface is followed or gathered may depend on a texture finer than the radius, so photons are stored all over it.
+// Compared with path tracing: a floor of metal under a sky, with a mirror's roughness on every other square.
 TEST(PhotonChoicesOfRoughness, AreTheEyePathsAlone) {
     const std::string scene =
         "LookAt 0 0 4  0 0 0  0 1 0\n"

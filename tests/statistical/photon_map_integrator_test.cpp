@@ -1,7 +1,7 @@
-// Photon mapping with photons that stay: closed forms, path-traced references, and itself under other settings.
+// Photon mapping with a photon map that is kept: closed forms, path-traced references, and itself under other settings.
 //
-// The spread of the mean over seeds is the error of a mean: a seed has its own photons. False alarms: each z-test has a rate of
-// 1e-6, at fixed seeds. What a radius blurs is allowed for where it is said so.
+// The spread of the mean over seeds is the error of a mean, because each seed has its own photons. False alarms: each z-test
+// has a rate of 1e-6, at fixed seeds. Tolerances for the blur of a radius are stated where they apply.
 #include "core/image/image_io.h"
 #include "support/runs.h"
 
@@ -55,8 +55,8 @@ TEST_P(PhotonMapIntegrator, FillsASphere) {
     }
 }
 
-// Backends follow the same paths and sum in the same order; a photon that takes another way at an edge changes the hit points around
-// it: the share of docs/determinism.md.
+// Backends follow the same paths and sum in the same order. A photon that takes a different path at an edge changes the hit
+// points around it: docs/determinism.md gives the share.
 TEST_P(PhotonMapIntegrator, GivesTheSameImageOnEveryBackend) {
     for (const char* integrator :
          {"photon_map:maxdepth=12,photons=20000", "photon_map:maxdepth=12,photons=20000,nearest=50"}) {
@@ -98,14 +98,14 @@ TEST_P(PhotonMapIntegratorReference, AgreesWithPathTracing) {
         fmt::format("photon_map:maxdepth={},photons=200000,radius=0.04{}", depth, GetParam().options);
     const Mean mean = mean_of_runs(file + ".pbrt", settings_of("cpu", integrator, 8, 0), 4);
     const double expected = reference_mean(file);
-    // Of four runs the error is known to a third only (t distribution of 3 degrees of freedom): a floor of 0.2 %.
+    // From four runs, the error is only known to a third (t distribution of 3 degrees of freedom), so it has a floor of 0.2 %.
     const double error = std::max(mean.error(), 0.002 * expected);
     EXPECT_LT(std::abs(mean.value() - expected), normal_threshold(kAlpha) * error + GetParam().allowed * expected)
         << mean.value() << " +- " << mean.error() << " against " << expected;
     EXPECT_LT(mean.error(), 0.01 * expected);
 }
 
-// Same seed, same image, however many threads store photons; also where structures are built anew in each pass.
+// Same seed, same image, however many threads store photons; also if structures are rebuilt in each pass.
 TEST(PhotonMapIntegratorDeterminism, ThreadsChangeNothing) {
     for (const char* map : {"sorted_grid", "splat", "stochastic_hash"}) {
         SCOPED_TRACE(map);
@@ -155,7 +155,7 @@ TEST(PhotonMapIntegratorNearest, OtherStructuresAreBadInput) {
     }
 }
 
-// A pass is a function of its number: rendered alone it is what it adds to the whole.
+// A pass is a function of its number: rendered alone, it is what it contributes to the whole.
 TEST(PhotonMapIntegratorDeterminism, PassesAreIndependent) {
     RenderSettings s = settings_of("cpu", "photon_map:maxdepth=12,photons=20000", 2, 32);
     const Rendered both = render_file(kScenes + "reference/sds-lamp.pbrt", s);
@@ -163,14 +163,14 @@ TEST(PhotonMapIntegratorDeterminism, PassesAreIndependent) {
     const Rendered first = render_file(kScenes + "reference/sds-lamp.pbrt", s);
     s.first_pass = 1;
     const Rendered second = render_file(kScenes + "reference/sds-lamp.pbrt", s);
-    // Sums of two floats in another order of rounding.
+    // Sums of two floats, rounded in a different order.
     for (size_t i = 0; i < both.pixels.size(); ++i)
         EXPECT_NEAR(double(both.pixels[i].sum.y), double(first.pixels[i].sum.y) + double(second.pixels[i].sum.y),
                     1e-5 * (double(both.pixels[i].sum.y) + 1e-3));
 }
 
-// Walls of albedo 4/5 show 5, and keep five photons of each path: more than the store first has room for, so that the paths are traced
-// again. 1 % is allowed for edges.
+// Walls of albedo 4/5 show 5, and store five photons of each path: more than the store has room for at first, so the paths are
+// traced again. 1 % is allowed for edges.
 TEST(PhotonMapIntegratorStore, GrowsUntilAllFit) {
     const std::string integrator = "photon_map:maxdepth=200,photons=40000,radius=0.05,direct=photons";
     const Mean mean = mean_of_runs("analytic/box-bright.pbrt", settings_of("cpu", integrator, 2, 16), 6);

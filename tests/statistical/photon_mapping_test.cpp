@@ -1,7 +1,7 @@
 // Progressive photon mapping where the answer is known: closed forms, path-traced references, and itself under other settings.
 //
-// The spread of the mean over seeds is the error of a mean. False alarms: each z-test has a rate of 1e-6, at fixed seeds. What a
-// radius blurs is allowed for where it is said so.
+// The spread of the mean over seeds is the error of a mean. False alarms: each z-test has a rate of 1e-6, at fixed seeds.
+// Tolerances for the blur of a radius are stated where they apply.
 #include "core/image/image_io.h"
 #include "support/runs.h"
 
@@ -72,7 +72,8 @@ TEST_P(PhotonMapping, GivesTheSameImageOnEveryBackend) {
             render_file(kScenes + "reference/sds-lamp.pbrt", settings_of(GetParam(), integrator, 2, 64));
         size_t equal = 0;
         for (size_t i = 0; i < cpu.pixels.size(); ++i) equal += cpu.pixels[i].sum == here.pixels[i].sum;
-        // A photon that takes another way at an edge changes the hit points around it: the share of docs/determinism.md.
+        // A photon that takes a different path at an edge changes the hit points around it: docs/determinism.md gives the
+        // share.
         EXPECT_GE(double(equal), 0.999 * double(cpu.pixels.size()));
     }
 }
@@ -106,7 +107,7 @@ TEST_P(PhotonMappingReference, AgreesWithPathTracing) {
         for (int x = 0; x < image.width; ++x)
             reference.add(0.2126 * double(image.at(x, y, 0)) + 0.7152 * double(image.at(x, y, 1)) +
                           0.0722 * double(image.at(x, y, 2)));
-    // Of four runs the error is known to a third only (t distribution of 3 degrees of freedom): a floor of 0.2 %.
+    // From four runs, the error is only known to a third (t distribution of 3 degrees of freedom), so it has a floor of 0.2 %.
     const double error = std::max(mean.error(), 0.002 * reference.value());
     EXPECT_LT(std::abs(mean.value() - reference.value()), normal_threshold(kAlpha) * error + 0.01 * reference.value())
         << mean.value() << " +- " << mean.error() << " against " << reference.value();
@@ -127,7 +128,7 @@ TEST(PhotonMappingStructures, AllGiveTheSameImage) {
     }
 }
 
-// Ray queries find the same photons in another order: sums of floats differ by their rounding.
+// Ray queries find the same photons in another order: sums of floats differ by rounding.
 TEST(PhotonMappingStructures, RayQueryGivesTheSameImage) {
     if (!offers_boxes()) GTEST_SKIP() << "no device that offers VK_KHR_ray_query";
     RenderSettings s = settings_of("vulkan", "sppm:maxdepth=12,schedule=memoryless,photonsperiteration=4000", 2, 48);
@@ -152,7 +153,7 @@ TEST(PhotonMappingStructures, StochasticHashingIsRightInTheMean) {
     }
 }
 
-// Same seed, same image, however many threads there are; only the race for buckets is left to chance.
+// Same seed, same image, however many threads there are; only the race for buckets is random.
 TEST(PhotonMappingDeterminism, ThreadsChangeNothing) {
     int compared = 0;
     for (const std::string& map : photon_maps().names()) {
@@ -185,7 +186,7 @@ TEST(PhotonMappingStore, PartsAddUp) {
     }
 }
 
-// A point light in a ball of glass: a path tracer sees the light's surroundings black, photons light them.
+// A point light in a ball of glass: path tracing cannot light the surroundings, photons do.
 TEST(PhotonMappingCaustics, FindWhatPathTracingCannot) {
     const Rendered path =
         render_file(kScenes + "reference/sds-point.pbrt", settings_of("cpu", "path:maxdepth=24", 16, 32));

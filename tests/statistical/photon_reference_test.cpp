@@ -1,9 +1,10 @@
 // sppm against pbrt-v4's sppm (scenes/reference/sds-*), with pbrt's own radius, photons and depth, in blocks of 8x8 pixels.
 //
-// Null hypothesis: a block has the same luminance in both, but for what radii blur. Allowed: six standard errors (both sides; ours
-// is pooled over the blocks, as a share of their luminance; 2e-9 each as normal variables, 1.5e-6 for 768 blocks), 2 % for radii that shrink by different counts, and 0.002 for light that leaks around the edges of walls (it falls with the
-// radius: 0.0013, 0.0008 and 0.0005 for radii of 0.04, 0.02 and 0.01 in front of the pool). Power: a block that is 6 % off is found
-// in all but the noisiest blocks, and the mean tells 1 %.
+// Null hypothesis: a block has the same luminance in both, except for the blur of radii. Allowed: six standard errors (both
+// sides; ours is pooled over the blocks, as a share of their luminance; 2e-9 each as normal variables, 1.5e-6 for 768 blocks),
+// 2 % for radii that shrink by different counts, and 0.002 for light that leaks around the edges of walls (it falls with the
+// radius: 0.0013, 0.0008 and 0.0005 for radii of 0.04, 0.02 and 0.01 in front of the pool). Power: a block that is 6 % off is
+// found in all but the noisiest blocks, and the mean detects 1 %.
 #include "core/image/image_io.h"
 #include "support/runs.h"
 
@@ -24,8 +25,8 @@ namespace {
 constexpr int kBlock = 8;
 constexpr int kSeeds = 4;
 
-// Below the ball of glass, where its caustic is narrowest, pbrt's sppm has 15 % more light than ours. Its path tracer's image of
-// sds-lamp says who is right: 0.195 in the worst block, where pbrt's sppm has 0.229 and ours 0.193.
+// Below the ball of glass, where its caustic is narrowest, pbrt's sppm has 15 % more light than ours. Its path tracer's image
+// of sds-lamp decides: it has 0.195 in the worst block, where pbrt's sppm has 0.229 and ours 0.193.
 const std::set<std::pair<int, int>> kFocus = {{5, 14}, {6, 14}, {5, 15}};
 
 struct Block {
@@ -95,7 +96,7 @@ TEST_P(PhotonReference, AgreesWithPbrtBlockByBlock) {
     if (wrong) save_failure(std::string("photon_reference_") + GetParam(), last.image);
 }
 
-// What the exception above says.
+// Verifies the comment on the exception above.
 TEST(PhotonReferenceFocus, PbrtsPathTracerDecidesAtTheFocus) {
     const std::vector<Block> photons = blocks_of("sds-lamp"), paths = blocks_of("sds-lamp-path");
     const size_t focus = 14 * 16 + 5;
@@ -110,8 +111,8 @@ TEST(PhotonReferenceFocus, PbrtsPathTracerDecidesAtTheFocus) {
     EXPECT_NEAR(sum, paths[focus].luminance, 0.05 * paths[focus].luminance);
 }
 
-// At edges and narrow caustics no stated confidence can hold: the share of all pixels whose error stays below the image's `error` is
-// reported, and that it is no less than half, so that the channel says something of every image.
+// At edges and narrow caustics, no stated confidence can hold. So the test prints the share of all pixels whose error stays
+// below the image's `error`, and requires at least half, so that the channel is meaningful for every image.
 TEST(PhotonReferenceCoverage, OfTheWholeImageIsReported) {
     const Image truth = read_image(kScenes + "reference/sds-lamp-path.exr", {true, true});
     for (const double confidence : {0.5, 0.9}) {

@@ -1,4 +1,4 @@
-// As ppm_noise_test, of coats on backends whose compiler takes long over them.
+// Like ppm_noise_test, for coats on backends whose compiler takes long for them.
 #include "support/pass_noise.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// ppm: what its hit points could not know when they were found, light from sampled lights, is drawn anew in each pass. False alarms:
-// at most 4e-6 a test and backend (pass_noise.h), at fixed seeds.
+// ppm: light from sampled lights, which is not known when hit points are found, is sampled again in each pass. False alarms: at
+// most 4e-6 per test and backend (pass_noise.h), at fixed seeds.
 #include "support/pass_noise.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ class PpmNoise : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Backends, PpmNoise, testing::ValuesIn(usable_backends()),
                          [](const auto& info) { return name_of(info.param); });
 
-// Nothing in the way: cos 45 + 3 / sqrt 10.
+// Nothing in between: cos 45 + 3 / sqrt 10.
 TEST_P(PpmNoise, OfTwoDistantLightsAveragesOut) {
     expect_new_noise_in_each_pass(GetParam(), two_suns("Material \"diffuse\" \"rgb reflectance\" [ 1 1 1 ]\n"),
                                   std::sqrt(0.5) + 3.0 / std::sqrt(10.0), 0.0);
@@ -26,7 +26,7 @@ TEST_P(PpmNoise, OfManyLightsAndAMaskAveragesOut) {
     expect_new_noise_in_each_pass(GetParam(), many_lamps(), reference.mean, reference.mean_error);
 }
 
-// On Vulkan: ppm_noise_long_test, for lavapipe's compiler takes long over coats.
+// On Vulkan this is in ppm_noise_long_test, because lavapipe takes long to compile coats.
 TEST(PpmNoiseOfCoats, AveragesOut) {
     for (const char* backend : {"cpu", "cpu-bvh2"}) {
         SCOPED_TRACE(backend);
@@ -34,8 +34,8 @@ TEST(PpmNoiseOfCoats, AveragesOut) {
     }
 }
 
-// One light behind a mask: a choice by the shadow ray would be the same in every pass, with a variance of 2/3. What is
-// left is that of the choice of a light: the speck's take a few samples.
+// One light behind a mask: a random choice by the shadow ray would be the same in every pass, with a variance of 2/3. The
+// remaining variance is that of the choice of a light: the speck's lights take a few samples.
 TEST_P(PpmNoise, OfAMaskIsNone) {
     const std::string scene = spot_scene(
         0.002, 0.5,

@@ -1,5 +1,5 @@
-// As the radius goes to zero, photon mapping shows what path tracing does: with fixed radii (alpha = 1), L(r) = L0 + b r^2 is
-// fitted to four radii in blocks of 8x8 pixels far from edges, and L0 compared with path tracing.
+// As the radius goes to zero, photon mapping converges to path tracing: with fixed radii (alpha = 1), L(r) = L0 + b r^2 is
+// fitted to four radii in blocks of 8x8 pixels far from edges, and L0 is compared with path tracing.
 //
 // A block's variance is taken from eight seeds, pooled over all blocks relative to their radiance (168 degrees of
 // freedom). False alarms: |z| > 6.5 in any of 24 blocks: 2e-9; the mean z is tested at 1e-6. Power: a factor of 3 % in
@@ -53,7 +53,8 @@ Blocks block_means(const std::string& file, const std::string& integrator, uint3
     return result;
 }
 
-// Blocks around which (a block's width each way) all normals are one and no light is seen: no disk of theirs meets an edge.
+// Blocks around which (within a block's width) all normals are the same and no light is visible: none of their disks crosses an
+// edge.
 std::vector<size_t> smooth_blocks(const Rendered& image) {
     const int normal = image.image.find_channel("normal.X");
     std::vector<size_t> blocks;
@@ -112,7 +113,7 @@ TEST(RadiusLimit, PhotonMappingTendsToPathTracing) {
         z_mean.add(z);
     }
     EXPECT_LT(worst, 6.5);
-    // Neighbouring blocks share photons: the mean of z is known no better than from its spread over a quarter as many.
+    // Neighbouring blocks share photons: the mean of z is only known as well as from the spread of a quarter as many blocks.
     EXPECT_LT(std::abs(z_mean.value()), normal_threshold(1e-6) * 2.0 * z_mean.error());
     RecordProperty("blocks", int(smooth.size()));
     RecordProperty("worst_z", std::to_string(worst));

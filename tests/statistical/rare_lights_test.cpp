@@ -1,4 +1,4 @@
-// Light whose share of all samples is below the step of a float reaches the picture all the same.
+// Light whose share of all samples is below the precision of a float still reaches the picture.
 //
 // False alarms: 9e-7 a mean (support/rare_lights.h), 6 means, fixed seeds.
 #include "core/image/image_io.h"

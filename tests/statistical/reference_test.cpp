@@ -24,11 +24,11 @@ constexpr double kBlockLimit = 6.5;
 
 struct ReferenceCase {
     const char* name;
-    bool same_model;  // both renderers do the same thing: z-tests; otherwise means only
+    bool same_model;  // both renderers do the same: z-tests; otherwise only means
     double mean_tolerance;
 };
 
-// What differs, and why:
+// Differences, and their causes:
 // - colour, conductor-gold: pbrt multiplies spectra, Lampyris RGB (3 % per channel).
 // - textures: pbrt filters over the pixel's footprint, Lampyris samples the texture at the point.
 const ReferenceCase kCases[] = {
@@ -47,10 +47,10 @@ double luminance_at(const Image& image, int x, int y) {
     return 0.2126 * image.at(x, y, 0) + 0.7152 * image.at(x, y, 1) + 0.0722 * image.at(x, y, 2);
 }
 
-// The variance of our side is estimated twice: from our samples, and from pbrt's, which are many more, by the ratio of sample
-// counts (the number in the scene file is that of all eight runs together; both renderers use the same estimator, but for how they
-// choose points on lights). The larger one counts: in a caustic
-// a few dozen samples may have met none of the rare bright paths, and would call themselves noiseless.
+// The variance of our side is estimated twice: from our samples, and from pbrt's, which are many more, scaled by the ratio of
+// sample counts (the number in the scene file is that of all eight runs together; both renderers use the same estimator, except
+// for how they choose points on lights). The larger estimate counts: in a caustic, a few dozen samples may have found none of
+// the rare bright paths, and would seem to have no noise.
 struct BlockSum {
     double difference = 0.0, ours = 0.0, ours_by_reference = 0.0, reference = 0.0;
     double variance() const { return std::max(ours, ours_by_reference) + reference; }

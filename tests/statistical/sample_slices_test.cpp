@@ -1,5 +1,5 @@
-// Few pixels with many samples: a slice that a driver's loop limit ends is done again in halves, and nothing of it is lost or counted
-// twice. Slices change no bit, so that the right image is the one of a device without a limit.
+// Few pixels with many samples: a slice that a driver's loop limit ends is repeated in halves, and no sample is lost or counted
+// twice. Slices do not change a bit, so the correct image is that of a device without a limit.
 #include "core/error.h"
 #include "support/limited_device.h"
 #include "support/runs.h"
@@ -22,7 +22,7 @@ Shape "trianglemesh" "point3 P" [ -3 0 -3  3 0 -3  3 0 3  -3 0 3 ] "integer indi
 Shape "trianglemesh" "point3 P" [ -1 0 1  1 0 1  0 1.5 1 ] "integer indices" [ 0 1 2 ]
 )";
 
-// A pixel that sees nothing but a sky of radiance 1.
+// A pixel that sees only a sky of radiance 1.
 const char* const kSky = R"(
 Film "rgb" "integer xresolution" 1 "integer yresolution" 1
 Camera "perspective"
@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(All, SampleSlices, testing::ValuesIn(cases()), [](const
     return test::name_of(info.param.backend + "_" + info.param.integrator.substr(0, info.param.integrator.find(':')));
 });
 
-// On a driver that ends loops (Mesa before 25) this comes to real failures; on others it holds, too.
+// On a driver that ends loops (Mesa before 25) there are real failures; on others the test holds, too.
 TEST(SampleSlicesOfDrivers, OnePixelTakesAnyNumberOfSamples) {
     for (const std::string& backend : test::usable_backends()) {
         SCOPED_TRACE(backend);
@@ -94,12 +94,12 @@ TEST(SampleSlicesOfDrivers, OnePixelTakesAnyNumberOfSamples) {
         s.samples = 200'000;
         const test::Rendered image = test::render_text(kSky, s);
         EXPECT_EQ(image.summary.samples, 200'000u);
-        // The sums of the film are compensated: what is left is the rounding of one division.
+        // The sums of the film are compensated: the remaining error is the rounding of one division.
         EXPECT_NEAR(image.value(0, 0, 0), 1.0f, 1e-6f);
     }
 }
 
-// sppm_eye and sppm_resolve take as many turns as there are hit points.
+// The loops of sppm_eye and sppm_resolve run once per hit point.
 TEST(SampleSlicesOfDrivers, OnePixelHasAnyNumberOfHitPoints) {
     for (const std::string& backend : test::usable_backends()) {
         SCOPED_TRACE(backend);

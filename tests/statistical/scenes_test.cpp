@@ -1,5 +1,6 @@
 // Real scenes by others: they load, render on every backend, and look like the author's own image from another renderer
-// (Tungsten): luminance of blocks of 16x16 pixels within 15 % on 90 % of the blocks, where the two renderers mean the same.
+// (Tungsten): the luminance of blocks of 16x16 pixels is within 15 % on 90 % of the blocks, where the two renderers mean the
+// same.
 //
 // Rendered at half size, so that a block is 8x8 pixels. The numbers of samples leave a relative noise of about 3 % a block in
 // diffuse light; a block's test allows two standard errors of its own on top of the 15 %.
@@ -21,7 +22,7 @@ struct SceneCase {
     uint32_t samples;
     double share;           // of blocks that must agree
     bool light_is_missing;  // blocks may be darker than the author's
-    const char* exception;  // why it is not held to 90 %
+    const char* exception;  // why the 90 % are not required
 };
 
 const SceneCase kScenes[] = {
@@ -31,7 +32,7 @@ const SceneCase kScenes[] = {
     // The author's plates are 0.40 to 0.42 times as bright, all of them: an albedo of the metal, which pbrt's conductor does not
     // have. Direct light on three of the plates agrees with a numerical integral of the GGX model to better than 3 %.
     {"veach-mis", {640, 360}, 4, 0.5, false, "(the author's metal has an albedo that the pbrt scene cannot say)"},
-    // Nearly all light comes through the water from a lamp of a few millimetres: paths that a path tracer does not find.
+    // Nearly all light from a lamp of a few millimetres comes through the water: a path tracer does not find these paths.
     {"water-caustic", {512, 512}, 4, 0.9, true, "(what a path tracer does not find is missing)"},
 };
 

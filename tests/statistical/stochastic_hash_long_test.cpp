@@ -1,4 +1,4 @@
-// The whole table of the noise of stochastic hashing: see stochastic_hash_test.cpp.
+// The complete table of the noise of stochastic hashing: see stochastic_hash_test.cpp.
 #include "support/hash_variance.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ TEST(StochasticHashLong, SlotsLessenItAsDrawingWithoutReplacementDoes) {
     for (const uint32_t slots : {1u, 2u, 4u, 8u})
         for (const double lambda : {4.0, 10.0, 20.0})
             for (const double cell : {2.0, 1.0})
-                // Eight slots leave little to measure: more passes.
+                // With eight slots, the noise is small and hard to measure: more passes.
                 expect_excess(*device, {.lambda = lambda, .cell = cell, .slots = slots, .passes = 24 * slots});
 }
 

@@ -1,5 +1,5 @@
-// Stochastic hashing is unbiased, and as noisy as theory says: with the photons held, over the random grid, hash and
-// selection. stochastic_hash_long_test covers the whole table.
+// Stochastic hashing is unbiased, and as noisy as theory predicts: for fixed photons, over the random grid, hash and selection.
+// stochastic_hash_long_test covers the complete table.
 #include "core/photon_map.h"
 #include "support/device_run.h"
 #include "support/hash_variance.h"
@@ -62,7 +62,7 @@ TEST(StochasticHash, IsUnbiased) {
                       [](const auto& a, const auto& b) { return a.flux.z < b.flux.z; });
             Mean flux, count;
             for (uint32_t pass = 0; pass < kPasses; ++pass) {
-                // The photons come by their power, as those of a store come by their depth.
+                // The photons are ordered by their power, as those of a store are by their depth.
                 PhotonSet set = upload_case(*device, photon_case);
                 set.pass = pass;
                 const auto truth = collect(*device, *exact, set), found = collect(*device, *map, set);
