@@ -327,8 +327,7 @@ TEST_P(Degenerate, AVeryLongPathIsWholeOrAnError) {
             "Material \"diffuse\" \"rgb reflectance\" [ 1 1 1 ]\n" +
                 kSphere,
             settings);
-        EXPECT_NEAR(room.value(0, 0, 1), 100001.0f,
-                    10.0f);  // 10^5 products, each rounded, accumulate an error of about 2e-5
+        EXPECT_NEAR(room.value(0, 0, 1), 100001.0f, 10.0f);  // 10^5 products, each rounded, are off by about 2e-5
     } catch (const MachineError& error) {
         EXPECT_NE(std::string(error.what()).find("could not finish a loop"), std::string::npos) << error.what();
         EXPECT_EQ(GetParam(), "vulkan") << "no driver ends loops here";

@@ -60,7 +60,7 @@ std::string test_name(std::string text) {
 Agreement expect_agreement(const std::string& scene, const std::string& other, const RenderSettings& settings,
                            double tolerance, double least) {
     RenderSettings s = settings;
-    if (s.integrator.empty()) s.integrator = "path";  // whatever the scene asks for
+    if (s.integrator.empty()) s.integrator = "path";  // whatever the scene needs
     s.backend = "cpu";
     s.device_settings.clear();
     const Rendered cpu = render_file(scene_path(scene), s);

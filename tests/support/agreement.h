@@ -1,4 +1,4 @@
-// How far two backends, given the same seed, show the same image.
+// How closely the images of two backends agree, given the same seed.
 #pragma once
 
 #include "support/render.h"
@@ -14,20 +14,21 @@ struct Agreement {
     size_t identical = 0;                       // to the bit
     size_t within = 0;                          // identical, or each channel within the relative tolerance
     double largest = 0.0;                       // relative difference of a channel
-    std::vector<std::array<int, 2>> diverging;  // the pixels that are not within, the first few: for --replay
+    std::vector<std::array<int, 2>> diverging;  // the first few pixels that are not within it: for --replay
     double share() const { return double(within) / double(pixels); }
 };
 
-// Relative to the larger of the two numbers, or to 1e-3 of the image's largest where both are darker.
+// Relative to the larger of the two numbers, or to 1e-3 of the image's maximum if both are darker.
 Agreement agreement(const Rendered& a, const Rendered& b, double tolerance);
 
 // Every scene of the folders scenes/reference and scenes/analytic, as paths relative to scenes/ without extension; sorted.
 std::vector<std::string> small_scenes();
 std::string scene_path(const std::string& name);
-// A name fit for a test.
+// A name that GoogleTest accepts.
 std::string test_name(std::string text);
 
-// Renders on the CPU and on `other`, by `path` if the settings name no integrator, prints the shares as a line of a table, and leaves images where `least` is not reached.
+// Renders on the CPU and on `other`, with `path` if the settings name no integrator. Prints the shares as a line of a table,
+// and saves the images if `least` is not reached.
 Agreement expect_agreement(const std::string& scene, const std::string& other, const RenderSettings& settings,
                            double tolerance, double least);
 

@@ -1,12 +1,12 @@
 // Comparing an image with a closed form, pixel by pixel: for tests of scenes/analytic.
 //
 // Noisy scenes: samples are independent, so a mean's z = (mean - expected) / sqrt(sum of the pixels' variances) is standard
-// normal but for the tails of single samples, which are averaged over at least 4096 of them. Tested are, per channel, the
-// whole image and its quarters: 15 numbers a scene, at |z| < 6: a false alarm of 2e-9 each. 15 noisy scenes x 15 x 3 backends:
-// 1.4e-6 for the suite; seeds are fixed, so that a test that passes once does not fail by chance later.
-// Power: a relative bias of 8.4 standard errors of the whole image's mean is found with probability 0.99; each test states
-// how large a bias may be to be found so, and fails where its samples cannot tell that much.
-// Scenes without noise: every pixel equals the closed form but for rounding.
+// normal, except for the tails of single samples, which are averaged over at least 4096 of them. The tests cover, per channel,
+// the whole image and its quarters: 15 numbers per scene, at |z| < 6, with a false-alarm rate of 2e-9 each. 15 noisy scenes x
+// 15 x 3 backends: 1.4e-6 for the suite. Seeds are fixed, so that a test that passes once does not fail by chance later.
+// Power: a relative bias of 8.4 standard errors of the whole image's mean is found with probability 0.99. Each test states how
+// large a bias must be to be found like this, and fails if its samples do not suffice for that.
+// Scenes without noise: every pixel equals the closed form, except for rounding.
 #pragma once
 
 #include "support/render.h"
@@ -92,7 +92,7 @@ class AnalyticTest : public testing::TestWithParam<std::string> {
         }
     }
 
-    // `scale`: what the error of darker pixels is relative to.
+    // `scale`: the value that errors of darker pixels are relative to.
     void expect_exact(const Expected& expected, double bound, double scale = 1e-3) const {
         double worst = 0.0;
         int worst_x = 0, worst_y = 0;
@@ -135,7 +135,7 @@ inline Expected constant(double value) {
     return [value](double, double, int) { return value; };
 }
 
-// Every test of a fixture, on every backend.
+// Defines every test of a fixture for every backend.
 #define LAMPYRIS_ANALYTIC_TESTS(fixture)                                                                     \
     INSTANTIATE_TEST_SUITE_P(Backends, fixture, testing::ValuesIn(usable_backends()), [](const auto& info) { \
         std::string name = info.param;                                                                       \

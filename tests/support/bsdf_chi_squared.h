@@ -1,4 +1,4 @@
-// Whether the directions that a material samples follow a density: its own, or a wrong one.
+// Tests whether the directions that a material samples follow a density: its own, or a wrong one.
 #pragma once
 
 #include "support/bsdf_probe.h"

@@ -1,4 +1,4 @@
-// Host side of kernel/bsdf_probe.kernel.h: scattering functions, asked on a backend.
+// Host side of kernel/bsdf_probe.kernel.h: calls scattering functions on a backend.
 #pragma once
 
 #include "core/kernel_types.h"
@@ -45,7 +45,7 @@ inline vec3 direction(double cos_theta, double phi) {
     return vec3(float(s * std::cos(phi)), float(s * std::sin(phi)), float(cos_theta));
 }
 
-// A backend's device with the probe compiled, kept for all tests of a program: Vulkan compiles for seconds.
+// A backend's device with the probe compiled, kept for all tests of a program, because Vulkan takes seconds to compile.
 class BsdfProber {
  public:
     static BsdfProber& on(const std::string& backend, const std::string& file = "kernel/bsdf_probe.kernel.h",
@@ -101,7 +101,7 @@ class BsdfProber {
     KernelHandle kernel_;
 };
 
-// ---- Materials to ask about ------------------------------------------------------------------------------------------
+// ---- Materials to test ----------------------------------------------------------------------------------------------
 
 inline BsdfProbe diffuse(float r) {
     BsdfProbe p;

@@ -1,4 +1,4 @@
-// A floor of tiles, each with a choice by chance that photons and eye paths both meet, and the share of light that it leaves.
+// A floor of tiles, each with a random choice that photons and eye paths both encounter, and the share of light that it leaves.
 #pragma once
 
 #include "support/one_of_each.h"
@@ -12,15 +12,15 @@
 
 namespace lampyris::test {
 
-// Standard errors of a tile come from the spread over 18 pairs of its pixels, whose discs of photons hardly overlap; of 17 degrees of
-// freedom, 7.4 of them are passed with a probability below 1e-6.
+// Standard errors of a tile come from the spread over 18 pairs of its pixels, whose discs of photons hardly overlap. With 17
+// degrees of freedom, 7.4 of them are exceeded with a probability below 1e-6.
 inline constexpr double kTileThreshold = 7.4;
 inline constexpr int kTiles = 4, kTilePixels = 8;  // tiles a row, pixels a tile and row
 inline constexpr double kTileSize = 0.2, kShown = 0.8;
 
 inline constexpr const char* kRampedAlpha = "\"texture alpha\" \"ramp\"";
 
-// A tile of the floor, and the share that a matte floor's radiance has of it. `material` names one of those below.
+// A tile of the floor, and its radiance as a share of a matte floor's. `material` is the name of one of the materials below.
 struct Tile {
     const char* material;
     double share;
@@ -29,7 +29,8 @@ struct Tile {
     bool floor_below = false;  // another matte floor, which rays reach through the mask
 };
 
-// What is not matte is a pane of glass, behind which all is black. "ramp" is a texture that rises from 0 to 1 across the tile.
+// Everything that is not matte is a pane of glass, and black behind that. "ramp" is a texture that rises from 0 to 1 across the
+// tile.
 inline const std::vector<Tile> kFloor = {
     {"matte", 1.0},
     {"none", 1.0},
@@ -58,7 +59,8 @@ inline std::string quad(double x, double y, double z, const std::string& more) {
 }
 
 // The tiles under a light from straight above, seen from there: a matte one of albedo 0.8 shows 0.8.
-// Without textures its ramps are their mean: lavapipe compiles minutes over the kernels of textured masks and mixes.
+// Without textures, the ramps are replaced by their mean: lavapipe takes minutes to compile kernels with textured masks and
+// mixes.
 inline std::string floor_scene(bool textured) {
     std::string text = fmt::format(
         "LookAt 0 0 1  0 0 0  0 1 0\n"
@@ -104,7 +106,8 @@ inline std::string floor_scene(bool textured) {
     return text;
 }
 
-// Pixels at a tile's rim see photons of the next tile. Pixels are taken in pairs opposite to each other, so that ramps cancel out.
+// Pixels at a tile's rim see photons of the next tile. Pixels are used in pairs opposite to each other, so that ramps cancel
+// out.
 inline Mean tile_mean(const Rendered& image, size_t tile) {
     Mean mean;
     // Seen from above, the camera's x runs against the world's.
@@ -116,12 +119,12 @@ inline Mean tile_mean(const Rendered& image, size_t tile) {
     return mean;
 }
 
-// `detectable`: standard errors above it would tell nothing.
+// `detectable`: if the standard errors are larger than this, the test is too weak, and fails.
 inline void expect_tiles(const Rendered& image, double detectable) {
     for (size_t i = 0; i < kFloor.size(); ++i) {
         const Mean mean = tile_mean(image, i);
         const double expected = 0.8 * kFloor[i].share;
-        // Where nothing is left to chance, rounding.
+        // If nothing is random, only rounding is allowed.
         EXPECT_LT(std::abs(mean.value() - expected), kTileThreshold * mean.error() + 1e-5)
             << "tile " << i << ": " << mean.value() << " +- " << mean.error() << ", expected " << expected;
         EXPECT_LT(mean.error(), detectable) << "tile " << i << ": the test cannot tell";

@@ -16,7 +16,7 @@ constexpr double kRadius = 0.25;     // of the first pass
 constexpr double kAlbedo = 0.5;
 constexpr double kConeAngle = 40.0;  // degrees
 
-// A spot light of intensity 1, at height 1 over the plane z = 0, whose cone is far wider than what the window's disks see.
+// A spot light of intensity 1, at height 1 over the plane z = 0, whose cone is far wider than the window and its disks.
 std::string scene_text(const std::string& sampler = "independent") {
     return fmt::format(
         "LookAt 0 0 3  0 0 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [ {0} {1} {0} {1} ]\n"
@@ -44,7 +44,7 @@ double pixel_truth(int x, int y) {
     return sum / (kGrid * kGrid);
 }
 
-// The share of the photons that fall into a disk about the foot: directions are uniform within the cone.
+// The share of the photons that hit a disk about the foot: directions are uniform within the cone.
 double disk_share(double r2) {
     return (1.0 - 1.0 / std::sqrt(1.0 + r2)) / (1.0 - std::cos(kConeAngle * std::numbers::pi / 180.0));
 }
@@ -185,8 +185,8 @@ ConvergenceSlopes measure_convergence(const ConvergenceSettings& asked) {
         return std::sqrt(std::max(0.0, (squares - sum * sum / asked.seeds)) * (asked.seeds - 1) / asked.seeds);
     };
     result.bias_squared_error = jackknife(b, bb), result.variance_error = jackknife(v, vv);
-    // What the radii of these passes say: the mean of their biases, and of their variances over n. The number of photons in a disk is
-    // binomial, so that of its relative variance is (1 - share) / share.
+    // The prediction from the radii of these passes: the mean of their biases, and of their variances over n. The number of
+    // photons in a disk is binomial, so its relative variance is (1 - share) / share.
     std::vector<ConvergencePointOfSeeds> expected;
     double bias = 0.0, variance = 0.0;
     size_t k = 0;

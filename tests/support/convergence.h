@@ -1,4 +1,4 @@
-// How the error of progressive photon mapping falls: bias and variance apart, on a plane under a spot light.
+// How the error of progressive photon mapping falls: bias and variance separately, on a plane under a spot light.
 #pragma once
 
 #include "support/render.h"
@@ -31,7 +31,7 @@ struct ConvergenceSettings {
     uint32_t passes = 256;
     uint64_t first = 8;       // the passes that are fitted: from this one on
     uint32_t photons = 3000;  // emitted a pass
-    // `sobol` has the same bias with less variance, whose slope is then not that of theory.
+    // `sobol` has the same bias with less variance, whose slope then differs from theory's.
     std::string sampler = "independent";
 };
 ConvergenceSlopes measure_convergence(const ConvergenceSettings& settings);

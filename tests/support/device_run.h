@@ -18,7 +18,7 @@ inline std::vector<std::string> usable_backends() {
     return names;
 }
 
-// Of tests that ask for the CPU's bits: a GPU divides as it likes unless it is told not to.
+// For tests that require the CPU's bits: by default, a GPU's divisions are less accurate.
 inline DeviceOptions exact_options(const std::string& backend) {
     DeviceOptions options;
     if (backend == "vulkan") options.settings["exact"] = "auto";

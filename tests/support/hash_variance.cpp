@@ -18,7 +18,7 @@ namespace {
 
 const double kPi = glm::pi<double>();
 
-// Photons of equal flux on the unit square; queries look far from its edge.
+// Photons of equal flux on the unit square; queries are far from its edge.
 PhotonCase make_patch(const VarianceSettings& settings, uint32_t seed) {
     PhotonCase patch;
     patch.radius = float(std::sqrt(settings.lambda / (kPi * settings.photons)));
@@ -77,7 +77,7 @@ double kappa(double cell) {
 
 double expected_excess(double lambda, double cell, double load, uint32_t slots) {
     const double per_area = lambda / kPi, in_cell = per_area * cell * cell;
-    // Cells that happen to share the bucket: Poisson, and each brings a Poisson number of photons.
+    // Cells that happen to share the bucket: their number is Poisson, and each contains a Poisson number of photons.
     const double sharing = load / in_cell;
     const auto kCells = size_t(sharing + 12 * std::sqrt(sharing) + 20);
     const std::vector<double> cells = poisson(sharing, kCells);

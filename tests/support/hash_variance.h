@@ -1,4 +1,4 @@
-// How noisy stochastic hashing is: what theory says (photons are Poisson on a plane, the grid is shifted at random), and a measurement.
+// The noise of stochastic hashing: theory (photons are Poisson on a plane, the grid is shifted at random), and a measurement.
 #pragma once
 
 #include "core/device.h"
@@ -25,11 +25,11 @@ struct VarianceSettings {
     uint32_t queries = 20'000, sets = 6, passes = 24;
 };
 
-// The variance over the random grid, hash and selection, with the photons held, over lambda: the mean over photon sets on a planar
-// patch. One number a set: its queries share photons and passes.
+// The variance over the random grid, hash and selection for fixed photons, divided by lambda: the mean over photon sets on a
+// planar patch. One number per set, because its queries share photons and passes.
 Mean measured_excess(Device& device, const VarianceSettings& settings);
 
-// Both, within 3 %, where the measurement tells that much.
+// Whether both agree within 3 %, if the measurement is precise enough.
 void expect_excess(Device& device, const VarianceSettings& settings);
 
 }  // namespace lampyris::test

@@ -1,4 +1,4 @@
-// Histograms over a domain that a unit square parametrises, and what a density expects of their cells.
+// Histograms over a domain that a unit square parametrises, and the counts that a density predicts for their cells.
 #pragma once
 
 #include "support/statistics.h"
@@ -46,8 +46,9 @@ struct Histogram {
     void miss() { cells.back() += 1; }
 };
 
-// The counts that `samples` samples of a density should leave in the cells, by midpoint quadrature with sub x sub points a
-// cell; what the density lacks to 1 is expected to miss. `density` maps all points to their densities at once.
+// The counts that `samples` samples of a density should leave in the cells, by midpoint quadrature with sub x sub points per
+// cell; if the density integrates to less than 1, the rest are expected to miss. `density` maps all points to their densities
+// at once.
 inline std::vector<double> expected_counts(
     const Domain& domain, int nx, int ny, int sub, double samples,
     const std::function<std::vector<double>(const std::vector<glm::vec4>&)>& density) {

@@ -1,5 +1,5 @@
-// What a layered material does, simulated in double precision and independently of the kernels: particles are traced from
-// the eye through interface, medium and base, choosing microfacets by their projected area alone (not by visibility).
+// A layered material, simulated in double precision and independently of the kernels: particles are traced from the eye through
+// interface, medium and base, choosing microfacets by their projected area alone (not by visibility).
 #pragma once
 
 #include "support/bsdf_probe.h"

@@ -1,4 +1,4 @@
-// A device that ends a kernel's loops early, as Mesa before 25 does: after so many samples in one run.
+// A device that ends a kernel's loops early, as Mesa before 25 does: after a number of samples in one run.
 #pragma once
 
 #include "core/device.h"
@@ -13,8 +13,8 @@
 
 namespace lampyris::test {
 
-// Runs everything on another device. A kernel that takes samples of pixels runs in full, so that the film is spoilt, and is then said
-// to be unfinished where it was to take more than `most`.
+// Runs everything on another device. A kernel that takes samples of pixels runs completely, so that the film is modified; if it
+// was to take more than `most` samples, it is then reported as unfinished.
 class LimitedDevice final : public Device {
  public:
     LimitedDevice(std::shared_ptr<Device> inner, uint32_t most, uint32_t& failures)

@@ -1,4 +1,5 @@
-// A scene file's text with all of the scene moved, camera included: for tests that far from the origin it is the same.
+// The text of a scene file with all of the scene moved, camera included, for tests that its image is the same far from the
+// origin.
 #pragma once
 
 #include "support/paired.h"
@@ -18,7 +19,7 @@ namespace lampyris::test {
 
 using Shift = std::array<double, 3>;
 
-// For scenes with a directive a line, that neither reset the transform nor include others.
+// For scenes with one directive per line that neither reset the transform nor include files.
 inline std::string moved_scene(const std::string& path, const Shift& by) {
     const auto translate = [&](double sign) {
         return fmt::format("Translate {:.17g} {:.17g} {:.17g}\n", sign * by[0], sign * by[1], sign * by[2]);
@@ -35,16 +36,16 @@ inline std::string moved_scene(const std::string& path, const Shift& by) {
         if (first == "Camera") text += translate(-1);
         text += line + "\n";
         if (first == "WorldBegin") text += translate(1);
-        if (first == "ObjectBegin") text += translate(-1);  // what is defined here is not in the world
+        if (first == "ObjectBegin") text += translate(-1);  // directives in here are not in world space
     }
     return text;
 }
 
-// What the scene at the origin and the moved one have in common, by the same random numbers. The transforms are in double
-// precision, and a scene that lies farther out than 64 times its size is moved back (recentre.h): what is left of the move is at most
-// what 64 sizes round, 64 eps = 4e-6 of the scene's size. Of a lamp's height of 1/100 of that it is 4e-4, of its light twice
-// that: kMoved. Where rounding turns a choice (of alpha, in a coat's walk, at an edge) it is noise; that is told by 6 standard errors:
-// a false alarm of 2e-9 each.
+// Compares the scene at the origin and the moved one, with the same random numbers. Transforms are in double precision, and a
+// scene that lies farther out than 64 times its size is moved back (recentre.h). So the effect of the move is at most the
+// rounding at 64 sizes, 64 eps = 4e-6 of the scene's size. That is 4e-4 of a lamp's height of 1/100 of the size, and twice that
+// for its light: kMoved. If rounding changes a random choice (of alpha, in a coat's walk, at an edge), the difference is noise,
+// which is tested with 6 standard errors: a false alarm of 2e-9 each.
 inline constexpr double kMoved = 1e-3;
 
 inline void expect_moved_alike(const std::string& path, const std::string& backend, const std::string& integrator,

@@ -1,5 +1,5 @@
-// Something tiny that calls for what the scenes of several tests do, so that these are one set of effects: a Vulkan driver that is a
-// CPU takes 20 seconds and more to compile the kernels of each set.
+// A tiny object that needs the effects of several tests' scenes, so that these scenes have one set of effects: a CPU's Vulkan
+// driver takes 20 seconds and more to compile the kernels of each set.
 #pragma once
 
 #include <fmt/format.h>
@@ -8,8 +8,8 @@
 
 namespace lampyris::test {
 
-// A speck of 0.01 about (0, 0, z): masked and mixed, of glass and matte, in an instance; and lights that send nearly
-// nothing. Its materials are named "speck-...".
+// A speck of 0.01 around (0, 0, z): masked and mixed, of glass and matte, in an instance; and lights that emit nearly nothing.
+// Its materials are named "speck-...".
 inline std::string one_of_each(double z) {
     return fmt::format(
         "MakeNamedMaterial \"speck-matte\" \"string type\" \"diffuse\"\n"

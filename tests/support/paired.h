@@ -1,8 +1,8 @@
-// Two renderings with the same random numbers, of scenes that are the same but for rounding.
+// Two renderings with the same random numbers, of scenes that are the same except for rounding.
 //
-// Pixel differences are paired: where the paths are the same but for rounding they are next to nothing, and the mean difference is
-// found to many digits with few samples; where rounding turns a choice (a hash of a position) they are noise, which their spread
-// over the pixels shows. A loss of light in a share f of n pixels stands sqrt(n f) standard errors out.
+// Pixel differences are paired. If the paths are the same except for rounding, differences are tiny, and a few samples give the
+// mean difference to many digits. If rounding changes a choice (a hash of a position), differences are noise, which shows in
+// their spread over the pixels. A loss of light in a share f of n pixels is sqrt(n f) standard errors.
 #pragma once
 
 #include "support/render.h"

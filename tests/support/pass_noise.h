@@ -1,4 +1,4 @@
-// Noise of ppm's direct light: scenes of which every pixel shows the same, so that the spread over pixels is the error.
+// Noise of ppm's direct light: scenes whose pixels all have the same value, so that the spread over pixels is the error.
 #pragma once
 
 #include "support/one_of_each.h"
@@ -35,8 +35,8 @@ inline std::string two_suns(const std::string& material) {
             material);
 }
 
-// More lights than are chosen by the number of the place on one, a lamp with an area, and a mask before some of them. All but the
-// floor is black: light arrives directly or not at all.
+// More lights than are chosen by the number that also places the point on a light, a lamp with an area, and a mask before some
+// of them. Everything but the floor is black: light arrives directly or not at all.
 inline std::string many_lamps() {
     std::string world;
     for (int i = 0; i < 300; ++i)
@@ -79,9 +79,10 @@ inline PassNoise noise_of(const std::string& scene, const RenderSettings& settin
     return noise;
 }
 
-// What is drawn anew in each pass averages out: variance over pixels falls as 1 / passes, and the estimated error sees it. Of 256
-// pixels ln of a variance is known to sqrt(2 / 255) = 0.089, of a quotient to 0.125; the estimate from 4 passes to 0.05. Limits are
-// 4.9 standard errors of a normal distribution, which a test passes with a probability of 1e-6.
+// Noise that is sampled again in each pass averages out: variance over pixels falls as 1 / passes, and the estimated error
+// includes it. From 256 pixels, the logarithm of a variance is known to sqrt(2 / 255) = 0.089, that of a quotient to 0.125, and
+// the estimate from 4 passes to 0.05. Limits are 4.9 standard errors of a normal distribution, which a test exceeds with a
+// probability of 1e-6.
 inline void expect_new_noise_in_each_pass(const std::string& backend, const std::string& scene, double expected,
                                           double expected_error) {
     RenderSettings settings = settings_of(backend, "ppm:maxdepth=8,photonsperiteration=64", 4, 0);
@@ -99,7 +100,7 @@ inline void expect_new_noise_in_each_pass(const std::string& backend, const std:
         << many.estimated_relmse << " estimated, " << many.relmse << " true, after 64 passes";
 }
 
-// A coat that reflects the sky, over a base that scatters; between them a medium, of which each evaluation is the mean of so many
+// A coat that reflects the sky, over a base that scatters; between them a medium. Each evaluation is the mean of a number of
 // random walks.
 inline std::string coated_floor(int walks) {
     return two_suns(fmt::format(
@@ -108,7 +109,8 @@ inline std::string coated_floor(int walks) {
         "\"rgb albedo\" [ 0.8 0.8 0.8 ] \"integer nsamples\" {}\n",
         walks));
 }
-// `path` takes the same walk for the same two directions, which those of the suns are: only many walks show it the coat itself.
+// For the same two directions, like those to the suns, `path` repeats the same walk, so only many walks show it the coat
+// itself.
 inline void expect_new_noise_on_a_coat(const std::string& backend) {
     static const PassNoise reference = noise_of(coated_floor(1000), settings_of("cpu", "path:maxdepth=8", 8, 0), 1.0);
     expect_new_noise_in_each_pass(backend, coated_floor(4), reference.mean, reference.mean_error);

@@ -30,7 +30,7 @@ struct Shape {
     float dimension;
 };
 
-// A query of about ten photons, where that can be.
+// A query of about ten photons, if possible.
 constexpr Shape kShapes[] = {
     {"random", [](Random& r) { return in_box(r); }, 0.06f, 3},
     {"clustered",
@@ -159,7 +159,7 @@ void expect_exact(const std::vector<std::string>& maps, const std::vector<Photon
                 try {
                     found = collect(*device, *map, upload_case(*device, cases[c]));
                 } catch (const MachineError& error) {
-                    // Mesa before 25 ends long loops, which must be told: thousands of photons in one place are such.
+                    // Mesa before 25 ends long loops, which must be reported: thousands of coincident photons cause such loops.
                     ASSERT_NE(device->description().find("Mesa 22"), std::string::npos) << error.what();
                     ASSERT_NE(std::string(error.what()).find("could not finish a loop"), std::string::npos);
                     continue;
@@ -182,7 +182,7 @@ std::vector<std::string> exact_photon_maps() {
     for (const std::string& name : photon_maps().names())
         if (name != "brute_force" && create_photon_map(name)->capabilities().exact) names.push_back(name);
     names.emplace_back("bvh:ray_query=on");
-    // Cells much smaller and larger than a query, a table that is full, and a tree of as many rounds as can be.
+    // Cells much smaller and larger than a query, a table that is full, and a tree with as many rounds as possible.
     for (const char* other :
          {"sorted_grid:cell_size=0.5,table_size=0.02", "sorted_grid:cell_size=7", "linked_list:table_size=0.02",
           "cuckoo:stash=0,table_size=1.05", "uniform_grid:capacity=1,cells=0.1", "kd_tree:leaf=4"})

@@ -1,4 +1,4 @@
-// Photons and queries for tests of photon maps, in every shape that breaks a structure.
+// Photons and queries for tests of photon maps, in every distribution that may break a structure.
 #pragma once
 
 #include "core/photon_map.h"
@@ -27,26 +27,27 @@ struct PhotonCase {
 };
 
 std::vector<std::string> photon_case_names();
-// Half of the queries lie where photons do, the rest near and about them; radii vary. Keys are a permutation of the indices.
+// Half of the queries are at positions of photons, the rest near and around them; radii vary. Keys are a permutation of the
+// indices.
 PhotonCase make_photon_case(const std::string& name, uint32_t photons, uint32_t queries, uint32_t seed = 1);
 
 // A case's photons and queries on a device.
 PhotonSet upload_case(Device& device, const PhotonCase& photon_case);
 
-// Whether the device has what the map asks for; maps that ask for nothing run everywhere.
+// Whether the device has the features that the map needs; maps that need none run everywhere.
 bool can_run(const Device& device, const PhotonMap& map);
 
 // Builds and gathers on a device.
 std::vector<CollectResult> collect(Device& device, PhotonMap& map, const PhotonSet& set);
 
-// Whether both found the same: by the sum of hashed keys, or where a map knows sums only, by the number and the power of what was
-// found; the reference adds up floats, with a relative error of n * 2^-24 at most.
+// Whether both found the same photons: by the sum of hashed keys. For maps with sums only, by the number and the power of the
+// photons found; the reference adds up floats, with a relative error of at most n * 2^-24.
 bool same_photons(const CollectResult& found, const CollectResult& expected, bool sums_only);
 
-// Fails where one of the maps, on any backend that can run it, finds anything but what brute force finds on the CPU.
+// Fails if one of the maps, on any backend that can run it, finds other photons than brute force finds on the CPU.
 void expect_exact(const std::vector<std::string>& maps, const std::vector<PhotonCase>& cases);
 
-// Names of maps, with parameters, that promise exactness: each in its default state and in those that tests ask for.
+// Names of maps, with parameters, that guarantee exactness: each with its defaults and with the parameters that tests need.
 std::vector<std::string> exact_photon_maps();
 
 }  // namespace lampyris::test

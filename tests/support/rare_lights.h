@@ -1,4 +1,4 @@
-// Scenes whose light is rare among what is sampled: a strong source that the picture does not see, and a weak one, which it does.
+// Scenes whose light is rarely sampled: a strong source that the picture does not see, and a weak one that it does.
 #pragma once
 
 #include "support/runs.h"
@@ -12,8 +12,8 @@
 
 namespace lampyris::test {
 
-// A wall (albedo 1/2, z = 0) lit by a square lamp (side 2, z = -6, radiance 1) that is cut into 2 n^2 triangles, and a far lamp behind
-// the wall of all but 1e-5 of the power. The picture shows [-3, 3]^2 of the wall.
+// A wall (albedo 1/2, z = 0) lit by a square lamp (side 2, z = -6, radiance 1), which is divided into 2 n^2 triangles, and a
+// distant lamp behind the wall with all but 1e-5 of the power. The picture shows [-3, 3]^2 of the wall.
 inline std::string lamp_in_pieces(int n) {
     std::string text =
         "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\nPixelFilter \"box\"\nSampler "
@@ -56,10 +56,10 @@ inline double mean_wall_radiance() {
     return sum / (kGrid * kGrid);
 }
 
-// The mean of a picture against its closed form, on the CPU by sixteen runs with seeds of their own: Student's t with 15 degrees of
-// freedom exceeds 8 with a probability of 9e-7. `allowed`: what a radius blurs; `detectable`: the relative error that the runs must be
-// able to tell. Other backends follow the same paths (docs/determinism.md): one of the runs, since each compiles its shaders anew,
-// gives the CPU's mean, and is within what one run can be off.
+// The mean of a picture against its closed form, on the CPU by sixteen runs with different seeds: Student's t with 15 degrees
+// of freedom exceeds 8 with a probability of 9e-7. `allowed`: the blur of a radius; `detectable`: the relative error that the
+// runs must be able to detect. Other backends follow the same paths (docs/determinism.md): because each compiles its shaders
+// again, they make only one of the runs, which must give the CPU's mean within the error of one run.
 inline void expect_mean_of_runs(const std::string& text, const std::string& backend, const std::string& integrator,
                                 uint32_t passes, double expected, double allowed, double detectable) {
     SCOPED_TRACE(integrator);

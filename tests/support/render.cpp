@@ -37,7 +37,7 @@ RenderRequest request_of(SceneSource scene, const RenderSettings& settings) {
     request.photon_map = settings.photon_map;
     request.sampler = settings.sampler;
     request.limits.passes = settings.samples;
-    // Of other integrators it would be a limit of the passes.
+    // For other integrators it would limit the passes.
     if (settings.eye_samples != 1) request.samples_per_pixel = settings.eye_samples;
     request.first_pass = settings.first_pass;
     request.max_slice = settings.slice;
@@ -49,7 +49,7 @@ RenderRequest request_of(SceneSource scene, const RenderSettings& settings) {
     return request;
 }
 
-// With seeds from the settings' on, one after the other: the scene is built once.
+// With consecutive seeds, beginning with the settings': the scene is built once.
 std::vector<Rendered> render_seeds(SceneSource scene, const RenderSettings& settings, uint32_t seeds = 1) {
     ProgressListener listener(settings);
     Rendering rendering(request_of(std::move(scene), settings), listener);

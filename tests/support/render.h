@@ -1,4 +1,4 @@
-// Rendering for tests: a scene text or file, a backend, and the film that comes out.
+// Rendering for tests: from a scene text or file and a backend to the film.
 #pragma once
 
 #include "core/photon_map.h"
@@ -24,12 +24,12 @@ struct RenderSettings {
     std::optional<std::string> sampler;  // in place of the scene's: "independent", "sobol"
     std::string integrator;              // "name:key=value"; empty: the scene's
     std::string photon_map;              // empty: the scene's
-    bool share_device = false;           // with all scenes that say so
+    bool share_device = false;           // as for all scenes that have this
     std::map<std::string, std::string> device_settings;
     std::optional<std::array<int, 4>> crop;
     uint32_t first_pass = 0;
-    std::function<std::shared_ptr<Device>(std::shared_ptr<Device>)> wrap;  // what to render on in place of the device
-    uint32_t slice = 0;  // passes per dispatch; 0: as the session decides
+    std::function<std::shared_ptr<Device>(std::shared_ptr<Device>)> wrap;  // replaces the device
+    uint32_t slice = 0;  // passes per dispatch; 0: chosen by the session
     std::function<void(const RenderProgress&, const Film&)> on_progress;  // RenderObserver's
 };
 
@@ -47,14 +47,14 @@ struct Rendered {
 
 // Throws InputError with the scene's errors.
 Rendered render_text(const std::string& scene_text, const RenderSettings& settings, const std::string& directory = ".");
-// With so many seeds from the settings' on, each an image of its own; the scene is built once.
+// With `count` consecutive seeds, beginning with the settings', one image each; the scene is built once.
 std::vector<Rendered> render_text_seeds(const std::string& scene_text, const RenderSettings& settings, uint32_t seeds);
 Rendered render_file(const std::string& path, const RenderSettings& settings);
 
-// Backends to test on: all that have a device on this machine.
+// Backends to test on: all with a device on this machine.
 std::vector<std::string> usable_backends();
 
-// Where a failing test leaves its images; the folder exists.
+// The folder where a failing test saves its images; it exists.
 std::string failure_directory();
 void save_failure(const std::string& name, const Image& image);
 

@@ -1,4 +1,4 @@
-// Renderings of one scene with different seeds: their mean, and how well it is known.
+// Renderings of one scene with different seeds: their mean, and its standard error.
 #pragma once
 
 #include "support/render.h"
@@ -35,7 +35,7 @@ inline Mean mean_of_runs(const std::string& file, RenderSettings settings, int r
     return mean;
 }
 
-// The same of a scene's text.
+// The same for a scene given as text.
 inline Mean mean_of_text_runs(const std::string& text, RenderSettings settings, uint32_t runs) {
     Mean mean;
     settings.seed = 100;

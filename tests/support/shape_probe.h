@@ -1,4 +1,4 @@
-// Runs tests/kernel/shape_probe.kernel.h, and what quadrics are in double precision.
+// Runs tests/kernel/shape_probe.kernel.h, and has quadrics in double precision.
 #pragma once
 
 #include "support/device_run.h"

@@ -58,7 +58,7 @@ ChiSquaredResult chi_squared_test(std::span<const double> observed, std::span<co
         add(pooled_observed, pooled_expected);
         pooled_observed = pooled_expected = 0;
     }
-    // What is left over is fewer than 5 expected counts in all: tested by Markov's inequality with room to spare.
+    // If fewer than 5 counts are expected in all, they are tested by Markov's inequality with room to spare.
     if (pooled_observed > 50 + 20 * pooled_expected) {
         result.p = 0;
         result.impossible =

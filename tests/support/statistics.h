@@ -17,11 +17,11 @@ struct ChiSquaredResult {
     double statistic = 0;
     int dof = 0;
     double p = 1;            // probability of a statistic at least this large if the expected counts are right
-    std::string impossible;  // why p is 0 without a statistic: counts where none can be
+    std::string impossible;  // why p is 0 without a statistic: counts in cells where none are possible
 };
 
-// Pearson's test of counts. Cells that expect fewer than 5 are pooled. The expected counts are given, not fitted; where they
-// sum to the number of samples, the last degree of freedom is lost.
+// Pearson's test of counts. Cells that expect fewer than 5 are pooled. The expected counts are given, not fitted; if they sum
+// to the number of samples, one degree of freedom is lost.
 ChiSquaredResult chi_squared_test(std::span<const double> observed, std::span<const double> expected);
 
 // Mean and its standard error.

@@ -1,4 +1,4 @@
-// A folder of one test's own: tests run side by side, each in a process of its own, and may be run by two builds at once.
+// A folder for one test: tests run in parallel, each in a process of its own, and two builds may run them at the same time.
 #pragma once
 
 #include <cerrno>
@@ -9,7 +9,7 @@
 
 namespace lampyris::test {
 
-// Made empty with a name that nothing else has; removed with everything in it.
+// Created empty, under a unique name; removed with everything in it.
 class TemporaryFolder {
  public:
     TemporaryFolder() {

@@ -109,7 +109,7 @@ class TestScene {
         return uint32_t(scene.images.size() - 1);
     }
 
-    // Fills what is derived. Arrays that are empty get an unused element, so that every backend can bind them.
+    // Fills in derived values. Empty arrays get an unused element, so that every backend can bind them.
     const Scene& finish() {
         choose_lights(scene, powers);
         scene.sets.assign(1, {0, uint32_t(scene.geometries.size())});

@@ -1,4 +1,4 @@
-// Textures in double precision, written from their definitions: what kernels are tested against.
+// Textures in double precision, written from their definitions: the reference for kernels.
 #pragma once
 
 #include "support/texture_scene.h"
@@ -23,7 +23,7 @@ struct TexturePoint {
     glm::dvec2 uv;
 };
 
-// `margin` becomes smaller than it was where the value jumps within that distance (in units of cells or texels).
+// `margin` is reduced to the distance (in units of cells or texels) at which the value jumps, if that is less.
 using ImageReference = std::function<glm::dvec3(uint32_t image, glm::dvec2 st, double& margin)>;
 glm::dvec3 reference_color(const TextureNode& node, const TexturePoint& point, const ImageReference& images,
                            double& margin);
@@ -31,7 +31,7 @@ glm::dvec3 reference_color(const TextureNode& node, const TexturePoint& point, c
 glm::dvec2 reference_st(const TextureOp& op, const TexturePoint& point);
 double reference_noise(glm::dvec3 p);
 
-// An image whose texels are known; row 0 is the upper one.
+// An image whose texels are known; row 0 is at the top.
 struct PlainImage {
     uint32_t width = 0, height = 0, wrap = 0, filtering = 0;
     std::vector<glm::dvec3> texels;

@@ -41,7 +41,7 @@ struct TextureScene {
         scene.record_effects(kernel::kAllEffects);
     }
 
-    // Only the first geometry is traced; the others are there to be asked for their opacity.
+    // Only the first geometry is traced; the others are only queried for their opacity.
     uint32_t add_geometry(uint32_t alpha_texture, float alpha) {
         kernel::GeometryRecord g{};
         g.kind = kernel::GEOMETRY_TRIANGLES;

@@ -1,4 +1,4 @@
-// From a scene's text to its arrays: orientation, baking, order, what asks for which effect.
+// From a scene's text to its arrays: orientation, transforms, order, and which directive needs which effect.
 #include "support/build_text.h"
 
 #include <gtest/gtest.h>
@@ -211,7 +211,7 @@ NamedMaterial "both"
                                                EFFECT_LAYERED_COAT | EFFECT_DIELECTRIC);
 }
 
-// Photons are kept by it (visible_point.h): no less than what any place of the material has.
+// Photons are stored according to it (visible_point.h): it is no less than the roughness anywhere on the material.
 TEST(BuildScene, MaterialsSayHowRoughTheyGet) {
     const BuiltText text = build_world(std::string(R"(
 Texture "spots" "float" "checkerboard" "float tex1" 0 "float tex2" 0.01
@@ -263,7 +263,7 @@ Shape "sphere"
 )");
     ASSERT_EQ(text.all_errors(), "");
     const Scene& scene = text.scene();
-    // Empty space, then media as they are used; one that does not absorb is empty space.
+    // Empty space, then media in the order of their use; a medium that does not absorb is empty space.
     ASSERT_EQ(scene.media.size(), 3u);
     EXPECT_EQ(scene.media[MEDIUM_VACUUM].sigma_a, Spectrum(0.0f));
     EXPECT_EQ(scene.media[1].sigma_a, Spectrum(2.0f, 4.0f, 6.0f));
@@ -279,7 +279,7 @@ Shape "sphere"
         if (request.effect != EFFECT_MEDIUM) continue;
         EXPECT_EQ(request.asked_by, "test.pbrt:6:1 (MakeNamedMedium \"homogeneous\")");
     }
-    // A medium that nothing is in calls for nothing.
+    // A medium that contains nothing needs no effect.
     const BuiltText unused =
         build_world("MakeNamedMedium \"ink\" \"string type\" \"homogeneous\" \"rgb sigma_s\" [ 0 0 0 ]\n");
     EXPECT_EQ(unused.all_errors(), "");

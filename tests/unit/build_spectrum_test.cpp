@@ -53,7 +53,7 @@ TEST(Spectrum, ColourSpacesKeepWhiteAndNestTheirGamuts) {
         expect_near(rec709_from(space, glm::vec3(0.7f), SpectrumUse::kAlbedo), glm::vec3(0.7f), 1e-5f);
     // ITU-R BT.2087: Rec.2020's red lies outside of Rec.709.
     expect_near(rec709_from("rec2020", {1.0f, 0.0f, 0.0f}, SpectrumUse::kAlbedo), {1.6605f, -0.1246f, -0.0182f}, 1e-3f);
-    // The white of ACES is warmer than D65; a light keeps that.
+    // The white of ACES is warmer than D65; a light keeps that white.
     const glm::vec3 aces = rec709_from("aces2065-1", glm::vec3(1.0f), SpectrumUse::kLight);
     EXPECT_GT(aces.x, aces.z);
 }

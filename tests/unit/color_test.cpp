@@ -1,4 +1,4 @@
-// Light to display values: the views of our OpenColorIO configuration against the formulas that they stand for.
+// Light to display values: the views of our OpenColorIO configuration against the formulas that define them.
 #include "core/image/color.h"
 
 #include "core/error.h"
@@ -84,8 +84,8 @@ TEST(Color, LogShowsStops) {
 }
 
 TEST(Color, AcesRollsOffAndStaysNeutral) {
-    // ACES 1.0 SDR video: 0.18 is shown as 10 nits of 100 or 4.8-5.0 of 48 (the reference mid-grey), that is about 0.10
-    // linear; greys stay grey but for the primaries' rounding; light above 1 is still told apart.
+    // ACES 1.0 SDR video: 0.18 is shown as 10 nits of 100 or 4.8-5.0 of 48 (the reference mid-grey), that is about 0.10 linear;
+    // greys stay grey except for the primaries' rounding; light above 1 still has visible gradation.
     Image image = greys({0.0f, 0.18f, 1.0f, 2.0f, 4.0f, 16.0f});
     apply_view(image, "ACES", 0.0f);
     EXPECT_NEAR(linear_from_srgb(image.at(1, 0, 1)), 0.10f, 0.01f);

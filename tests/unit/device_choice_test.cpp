@@ -1,4 +1,4 @@
-// --device: a number is a number, however many digits names have.
+// --device: a number is an index, whatever digits the names contain.
 #include "core/device_choice.h"
 
 #include "core/error.h"

@@ -1,4 +1,4 @@
-// The set of effects, and who asked for each.
+// The set of effects, and the directive that needs each.
 #include "core/effects.h"
 
 #include <gtest/gtest.h>

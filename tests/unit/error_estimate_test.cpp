@@ -1,4 +1,4 @@
-// The error that pixels predict by themselves: against closed forms, and against pictures whose truth is known.
+// The error that pixels predict from their own variance: against closed forms, and against pictures whose true error is known.
 #include "core/error_estimate.h"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ struct Flashes {
     }
 };
 
-// The error of a picture of flashes, and its estimate: both over what is expected of the error.
+// The error of a picture of flashes, and its estimate, both divided by the expected error.
 struct Ratios {
     double error, estimate, share;
 };
@@ -64,7 +64,7 @@ Ratios ratios(const Flashes& flashes, uint32_t side, uint32_t seed) {
 
 TEST(ErrorEstimate, IsTheFormulaWhereMeansAreKnown) {
     EXPECT_NEAR(Picture(7, 5, 2.0, 0.02).estimate().relmse, 0.02 / 4.01, 1e-9);
-    Picture ramp(64, 3, 0.0, 0.0);  // neighbours that differ take nothing from means that are known
+    Picture ramp(64, 3, 0.0, 0.0);  // different neighbours do not change means that are known well
     double expected = 0.0;
     for (uint32_t y = 0; y < 3; ++y)
         for (uint32_t x = 0; x < 64; ++x) {
@@ -76,8 +76,9 @@ TEST(ErrorEstimate, IsTheFormulaWhereMeansAreKnown) {
 }
 
 TEST(ErrorEstimate, SeesWhatFirefliesHide) {
-    // With the firefly's own mean in the denominator the error of a pixel with one is at most 1, and its true error 30 to
-    // 20,000. The bounds are five standard deviations of the number of flashes, and the neighbours' part in the rest.
+    // With the firefly's own mean in the denominator, the error of a pixel with one would be at most 1, while its true error is
+    // 30 to 20,000. The bounds are five standard deviations of the number of flashes, and the neighbours' influence on the
+    // rest.
     for (const Flashes& flashes : {Flashes{0.2, 1.0 / 500, 40.0, 16}, Flashes{0.2, 1.0 / 5000, 400.0, 64},
                                    Flashes{0.0, 1.0 / 100, 10.0, 16}, Flashes{1.0, 1.0 / 2000, 300.0, 8}}) {
         SCOPED_TRACE(flashes.flash);
@@ -89,9 +90,9 @@ TEST(ErrorEstimate, SeesWhatFirefliesHide) {
 }
 
 TEST(ErrorEstimate, IsRightWithoutFireflies) {
-    // A sample in two is bright: a mean's relative variance is 1/n. In a denominator it makes 1/R^2 too large by three times
-    // that, and the neighbours' part by less than it once more. The error itself is known to 1.5 % (9216 pixels), five times
-    // which is allowed.
+    // One sample in two is bright: a mean's relative variance is 1/n. In a denominator this makes 1/R^2 too large by three
+    // times that, and the neighbours' influence by less than that again. The error itself is known to 1.5 % (9216 pixels); five
+    // times that is allowed.
     for (const int samples : {16, 64, 256}) {
         SCOPED_TRACE(samples);
         const Ratios r = ratios({0.0, 0.5, 2.0, samples}, 96, 2);
@@ -101,7 +102,7 @@ TEST(ErrorEstimate, IsRightWithoutFireflies) {
 }
 
 TEST(ErrorEstimate, LeavesTheEdgesOfLampsAlone) {
-    // A lamp of 100 in a room of 0.1: pixels on its edge, half covered, know their mean to an eighth after 64 samples.
+    // A lamp of 100 in a room of 0.1: for half-covered pixels on its edge, the mean is known to an eighth after 64 samples.
     Picture picture(32, 32, 0.1, 1e-6);
     for (uint32_t y = 0; y < 32; ++y) {
         Picture::set(picture.at(16, y), 50.0, 2500.0 / 64.0);
@@ -124,7 +125,7 @@ TEST(ErrorEstimate, CountsAsDarkWhatHasNoLightAround) {
     Picture picture(40, 40, 0.0, 0.0);
     EXPECT_EQ(picture.estimate().dark_share, 1.0);
     EXPECT_EQ(picture.estimate().relmse, 0.0);
-    Picture::set(picture.at(20, 20), 1.0, 1.0);  // speaks for 5 x 5
+    Picture::set(picture.at(20, 20), 1.0, 1.0);  // affects 5 x 5
     EXPECT_DOUBLE_EQ(picture.estimate().dark_share, (1600.0 - 25.0) / 1600.0);
     for (PixelEstimate& pixel : picture.pixels) pixel.sees_surface = false;
     EXPECT_EQ(picture.estimate().dark_share, 0.0);
@@ -132,7 +133,7 @@ TEST(ErrorEstimate, CountsAsDarkWhatHasNoLightAround) {
 
 TEST(ErrorEstimate, HoldsAtTheEnds) {
     constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_NEAR(Picture(1, 1, 1.0, 4.0).estimate().relmse, 4.0 / 1.01, 1e-9);  // no neighbour says anything else
+    EXPECT_NEAR(Picture(1, 1, 1.0, 4.0).estimate().relmse, 4.0 / 1.01, 1e-9);  // the neighbours agree
     Picture picture(5, 1, 1.0, 0.5);
     picture.at(2, 0).radiance.fill({1e30, 1e60});
     EXPECT_NEAR(picture.estimate().relmse / (1e60 / 1.01 / 5.0), 1.0, 1e-9);  // not lost in a difference of sums
@@ -140,7 +141,7 @@ TEST(ErrorEstimate, HoldsAtTheEnds) {
     EXPECT_NEAR(picture.estimate().relmse, 0.5 / 1.01, 1e-9);
     picture.at(3, 0).radiance.fill({1.0, kNaN});  // one sample
     EXPECT_TRUE(std::isnan(picture.estimate().relmse));
-    // Negative light, of a filter's lobes: relMSE squares it.
+    // Negative light, from a filter's lobes: relMSE squares it.
     EXPECT_NEAR(Picture(4, 4, -2.0, 0.02).estimate().relmse, 0.02 / 4.01, 1e-9);
 }
 

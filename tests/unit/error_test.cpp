@@ -1,4 +1,4 @@
-// Diagnostics: what is told of a scene's mistakes, in the order in which a reader meets them.
+// Diagnostics: how a scene's mistakes are reported, in the order in which a reader meets them.
 #include "core/error.h"
 
 #include <gtest/gtest.h>
@@ -37,8 +37,8 @@ TEST(Error, MistakesAreToldInTheOrderOfTheSource) {
     }
 }
 
-// Lines and columns against counting from the file's start, asked for in any order: of short lines, of lines as long as the blocks
-// by which places are found, and of a file that is one line.
+// Lines and columns compared with counting from the file's start, in random order: for short lines, for lines as long as the
+// blocks that lookups use, and for a file of a single line.
 TEST(Error, PlacesAreThoseOfCounting) {
     std::string lines;
     for (int i = 0; lines.size() < 50000; ++i) lines += std::string(size_t(i * i % 97), 'x') + (i % 3 ? "\n" : "\r\n");
@@ -61,7 +61,7 @@ TEST(Error, PlacesAreThoseOfCounting) {
     }
 }
 
-// The excerpt of a place in a line that is very long ends where more would be cut anyway.
+// In a very long line, the excerpt is cut at the same length anyway.
 TEST(Error, LongLinesAreCutAroundThePlace) {
     Sources sources;
     const uint32_t file =
@@ -71,7 +71,7 @@ TEST(Error, LongLinesAreCutAroundThePlace) {
     EXPECT_EQ(sources.excerpt({file, 6}), std::string(100, 'a') + "...\n^");
 }
 
-// Where a scene defines very many names, guessing what was meant must not take for ever.
+// If a scene defines very many names, suggestions must not take too long.
 TEST(Error, GuessesAreLimited) {
     Sources sources;
     Diagnostics diagnostics(sources);
@@ -100,7 +100,7 @@ TEST(Error, WarningsToo) {
     EXPECT_EQ(diagnostics.warnings().back(), "warning: further warnings are not shown");
 }
 
-// The errors that are shown are the first of the scene, even where a later stage finds them after many others.
+// The errors that are shown are the scene's first, even if a later stage finds them after many others.
 TEST(Error, TheFirstOfManyAreShown) {
     Sources sources;
     const uint32_t file = sources.add_owned("a.pbrt", std::string(200, '\n'));

@@ -1,4 +1,4 @@
-// What the next halving of the error costs: on histories whose law is known, and whether an estimate can be trusted.
+// The cost of the next halving of the error, for histories whose law is known, and whether an estimate can be trusted.
 #include "core/forecast.h"
 
 #include <gtest/gtest.h>
@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// Looks at powers of two and every 50 passes, of an error 0.5 passes^-exponent with log-normal noise, as are the seconds of a
-// pass.
+// Points at powers of two and every 50 passes, with an error of 0.5 passes^-exponent and log-normal noise; the seconds of a
+// pass are noisy, too.
 struct History {
     double exponent, error_noise, time_noise;
     std::mt19937 random;
@@ -34,7 +34,7 @@ struct History {
         }
         return points;
     }
-    // Further seconds until a look sees half of the last error of `points`.
+    // Further seconds until a point has half of the last error of `points`.
     double truth(const std::vector<ErrorPoint>& points) {
         const double noisy_scale = 0.5 * std::exp(normal(error_noise));
         const double passes = std::pow(noisy_scale / (0.5 * points.back().error), 1.0 / exponent);
@@ -43,7 +43,7 @@ struct History {
 };
 
 double coverage(double exponent, ErrorRate rate, double& width) {
-    // 1000 histories: their share is 0.0095 off (one standard deviation) where the truth is 0.9.
+    // Over 1000 histories, the share has a standard deviation of 0.0095 if the truth is 0.9.
     constexpr int kHistories = 1000;
     int within = 0;
     std::vector<double> ratios;
@@ -64,7 +64,7 @@ double coverage(double exponent, ErrorRate rate, double& width) {
 }
 
 TEST(Forecast, CoversTheTruthAsOftenAsItSays) {
-    // Three standard deviations below 0.9: with other seeds, a forecast that is right fails once in 700 tests.
+    // Three standard deviations below 0.9: with other seeds, a correct forecast fails once in 700 tests.
     double width = 0.0;
     EXPECT_GE(coverage(1.0, ErrorRate::of_samples(), width), 0.87);
     EXPECT_LT(width, 2.5);
@@ -79,7 +79,7 @@ TEST(Forecast, KnowsExactLaws) {
     ErrorForecast forecast = forecast_halving(samples.until(256), ErrorRate::of_samples());
     EXPECT_NEAR(forecast.halving_s, 256 * 0.02, 1e-6);  // as much again
     History photons{0.5, 0.0, 0.0, std::mt19937(1)};
-    // Four times the passes halve it; belief in 2/3 pulls the exponent by a few per cent.
+    // Four times the passes halve the error; the prior of 2/3 changes the exponent by a few per cent.
     forecast = forecast_halving(photons.until(256), ErrorRate::of_photons(2.0 / 3.0));
     EXPECT_NEAR(forecast.halving_s, 3 * 256 * 0.02, 0.6);
 }
@@ -123,7 +123,8 @@ TEST(Forecast, TellsWhyAnEstimateIsUnstable) {
     EXPECT_EQ(why_unstable({8, 0.02, 0.0}, falls, samples), "");
     EXPECT_EQ(why_unstable({64, 0.02, 0.5}, falls, samples), "50 % of the surfaces in sight have no light yet");
     EXPECT_EQ(why_unstable({64, 0.6, 0.0}, falls, samples), "0.1 % of the pixels make 60 % of it");
-    // As passes^-0.25: for the mean of samples, the variance that is seen still grows; for photon maps that is theory.
+    // As passes^-0.25: for the mean of samples, this means that the measured variance still grows; for photon maps, theory
+    // predicts it.
     History slow{0.25, 0.0, 0.0, std::mt19937(1)};
     const std::vector<ErrorPoint> slows = slow.until(64);
     EXPECT_EQ(why_unstable({64, 0.02, 0.0}, slows, samples), "the variance seen is 1.7 times that at half the passes");

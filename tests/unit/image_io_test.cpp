@@ -1,4 +1,4 @@
-// Images to files and back: what must survive does, and what cannot be read or written says why.
+// Images to files and back: the data that must survive do, and errors of reading or writing give a reason.
 #include "core/image/image_io.h"
 
 #include "core/error.h"
@@ -64,7 +64,7 @@ std::string message_of(F&& f, ExitCode expected) {
 }
 
 TEST_F(ImageIo, ExrKeepsEveryBitOfEveryChannel) {
-    // 67 x 41 is no multiple of the tile.
+    // 67 x 41 is not a multiple of the tile size.
     const Image image = sample_image(67, 41,
                                      {"R", "G", "B", "albedo.R", "albedo.G", "albedo.B", "depth.Z", "normal.X",
                                       "normal.Y", "normal.Z", "samples", "variance.B", "variance.G", "variance.R"});
@@ -259,7 +259,7 @@ TEST_F(ImageIo, AFullDiskIsToldAndTheImageSaved) {
 TEST_F(ImageIo, AFailedWriteLeavesTheOldFileAlone) {
     const std::string target = path("kept.txt");
     write_file_atomically(target, "first");
-    // A limit on the size of files makes write() fail half-way, in a process of its own.
+    // A limit on file sizes makes write() fail half-way, in a process of its own.
     const pid_t child = ::fork();
     ASSERT_GE(child, 0);
     if (child == 0) {

@@ -38,10 +38,10 @@ TEST(LightDistribution, WeightsOfAnyScale) {
     EXPECT_NEAR(double(tables[1]), kTotal * 2.0 / 3, 1);
     EXPECT_EQ(tables[2], kTotal);
     EXPECT_EQ(tables[3 + 1], kTotal / 2);
-    EXPECT_EQ(tables[6 + 1], 1u);  // next to nothing is not nothing
+    EXPECT_EQ(tables[6 + 1], 1u);  // a tiny weight is not zero
 }
 
-// Exactly: the numbers of a CDF are its probabilities, and no weight, however small, is without one.
+// Exactly: the integers of a CDF are its probabilities, and every positive weight, however small, has at least one.
 TEST(LightDistribution, TenMillionWeightsOfAContrastOfABillionAllHaveTheirShare) {
     constexpr size_t kCount = 10'000'000;
     std::vector<double> kinds(1000), weights(kCount);
@@ -65,7 +65,7 @@ TEST(LightDistribution, TenMillionWeightsOfAContrastOfABillionAllHaveTheirShare)
         const uint32_t share = tables[i + 1] - tables[i];
         lost += weights[i] > 0 && share == 0;
         given += weights[i] == 0 && share != 0;
-        // Of what is shared by weight one more or less, by rounding down.
+        // Of the integers that are shared by weight, one more or less, because of rounding down.
         off += weights[i] > 0 && std::abs(share - 1.0 - weights[i] / sum * double(kTotal - positive)) > 1.001;
     }
     EXPECT_EQ(lost, 0u);
@@ -91,7 +91,7 @@ TEST(LightDistribution, ImagesHaveRowsThenTexels) {
               (Tables{0, quarter, quarter, kTotal, /* rows */ 0, quarter, kTotal, 0, half, kTotal, 0, half, kTotal}));
 }
 
-// A sun beside it does not take the sky's samples away; what is black gets none of them.
+// A sun does not take away the samples of the sky beside it; black texels get none of them.
 TEST(LightDistribution, TexelsHaveAShareForAll) {
     Tables tables;
     append_image_distribution(std::vector<float>{1e9f, 1, 0, 1}, 2, 2, kEvenLightShare, tables);
@@ -112,7 +112,7 @@ TEST(LightDistribution, LightsAreChosenByPowerWithAShareForAll) {
     EXPECT_FLOAT_EQ(scene.lights[0].choice_probability + scene.lights[2].choice_probability, 1);
 }
 
-// Powers beyond a float's range count by what they are.
+// Powers beyond a float's range still count correctly.
 TEST(LightDistribution, LightsOfAnyPowerHaveTheirShare) {
     Scene scene;
     scene.lights.resize(4);
@@ -132,7 +132,7 @@ TEST(LightDistribution, NoLightsNeedNoTable) {
     EXPECT_TRUE(scene.distributions.empty());
 }
 
-// Closed forms and values at which the filters are known.
+// Closed forms, and values of the filters that are known.
 TEST(FilterTable, FiltersHaveTheirKnownValues) {
     EXPECT_DOUBLE_EQ(gaussian_filter(1.5, 1.5, 0.5), 0);
     EXPECT_DOUBLE_EQ(gaussian_filter(0, 1.5, 0.5), 1 - std::exp(-4.5));
@@ -168,7 +168,7 @@ TEST(FilterTable, IntervalsKeepTheirSignAndTablesFollowEachOther) {
     EXPECT_EQ(y[2 * n + 2], 1);
     // A tent's CDF from its peak: 1 - (1 - x)^2.
     for (uint32_t i = 0; i <= n; ++i) EXPECT_NEAR(y[n + 1 + i], 1 - std::pow(1 - double(i) / n, 2), 1e-6);
-    // The guide never points past a number's interval, and hardly before it.
+    // The guide never points past a number's interval, and rarely far before it.
     for (const float* table : {x, y}) {
         const float *cdf = table + n + 1, *guide = table + 2 * n + 3;
         for (uint32_t i = 0; i < n; ++i) {

@@ -1,6 +1,6 @@
-// Loading takes time in proportion to what a scene says, whatever it says many times. Ten times the statements may take 25 times
-// the processor time: what leaves the caches takes up to 18, what is quadratic nearly 100. A measurement that another program
-// disturbs is made again, so that three in a row must be wrong for a false alarm.
+// Loading time is proportional to the size of a scene, even if it repeats some statement many times. Ten times the statements
+// may take 25 times the processor time: data that no longer fit the caches cause up to 18, quadratic behaviour nearly 100. A
+// measurement that another program disturbs is repeated, so that a false alarm needs three wrong ones in a row.
 #include "core/device.h"
 #include "support/build_text.h"
 #include "support/render.h"
@@ -32,7 +32,7 @@ std::string repeat(int n, const std::function<std::string(int)>& one) {
     return text;
 }
 
-// A statement at a place of its own.
+// A statement at a different location each time.
 std::string at(int i, const std::string& body) {
     return fmt::format("AttributeBegin\nTranslate {} {} {}\n{}\nAttributeEnd\n", i % 100, i / 100 % 100, i / 10000,
                        body);
@@ -183,7 +183,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, LoadingTime, testing::ValuesIn(kinds()), [](cons
     return name;
 });
 
-// Of many files, each of which changes a coordinate system while another thousand are known.
+// Many files, each of which changes a coordinate system while another thousand are known.
 TEST(LoadingTimeOfFiles, IsInProportion) {
     const TemporaryFolder folder;
     const auto load = [&](int n) {
@@ -203,7 +203,7 @@ TEST(LoadingTimeOfFiles, IsInProportion) {
     expect_proportion("files", load, 5000);
 }
 
-// What a device makes of the scene: acceleration structures and buffers.
+// Setting the scene up on a device: acceleration structures and buffers.
 class UploadTime : public testing::TestWithParam<std::string> {};
 
 TEST_P(UploadTime, IsInProportion) {

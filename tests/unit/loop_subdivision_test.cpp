@@ -22,7 +22,7 @@ TEST(LoopSubdivision, EulerCountsOfAClosedSurface) {
     }
 }
 
-// The limit position of a vertex does not depend on how often the mesh was split before.
+// The limit position of a vertex does not depend on how often the mesh was subdivided before.
 TEST(LoopSubdivision, LimitPositionsDoNotDependOnTheLevel) {
     const SubdividedMesh first = loop_subdivide(kOctahedron, kFaces, 0), later = loop_subdivide(kOctahedron, kFaces, 4);
     for (size_t i = 0; i < kOctahedron.size(); ++i)
@@ -31,7 +31,7 @@ TEST(LoopSubdivision, LimitPositionsDoNotDependOnTheLevel) {
     EXPECT_NEAR(first.positions[0].x, 1.0f - 4.0f / 8.0f, 1e-6f);
 }
 
-// The normals lie on the axes, on the side that pbrt-v4 chooses: against the counter-clockwise faces' outside.
+// The normals lie on the axes, on the side that pbrt-v4 chooses: opposite to the outside of counter-clockwise faces.
 TEST(LoopSubdivision, NormalsAreTheLimitSurfaces) {
     const SubdividedMesh mesh = loop_subdivide(kOctahedron, kFaces, 2);
     for (size_t i = 0; i < kOctahedron.size(); ++i)

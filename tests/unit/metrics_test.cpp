@@ -37,7 +37,7 @@ TEST(Metrics, AreTheirFormulas) {
 }
 
 TEST(Metrics, TrimmingDropsTheWorstThousandth) {
-    // 3500 pixels, R = 1, I - R = 0.1, but for 4 fireflies: 3 are dropped, one stays.
+    // 3500 pixels, R = 1, I - R = 0.1, except for 4 fireflies: 3 are dropped, one stays.
     Image reference(100, 35, {"R", "G", "B"}), image = reference;
     std::fill(reference.pixels.begin(), reference.pixels.end(), 1.0f);
     std::fill(image.pixels.begin(), image.pixels.end(), 1.5f);

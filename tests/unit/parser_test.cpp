@@ -1,4 +1,4 @@
-// Directives and what they make: the graphics state, its snapshots in entities, names, blocks, included files.
+// Directives and their results: the graphics state, its snapshots in entities, names, blocks, included files.
 #include "core/scene/description.h"
 #include "support/temporary_folder.h"
 
@@ -39,7 +39,7 @@ void expect_near(const glm::vec3& a, const glm::vec3& b, float tolerance = 1e-6f
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], tolerance) << "component " << i;
 }
 
-// Where the shape's origin-based point lands with the transforms of `text` in force.
+// The position of the shape's origin under the transforms of `text`.
 glm::vec3 placed(const std::string& text, const glm::vec3& p) {
     const SceneDescription scene = parse("WorldBegin\n" + text + "\nShape \"sphere\"");
     return transform_point(scene.shapes.at(0).world_from_object.matrix[0], p);
@@ -214,7 +214,7 @@ Shape "sphere" "rgb x" [ 1 1 1 ])");
     EXPECT_EQ(inner.area_light, 0u);
     EXPECT_EQ(inner.interior_medium, 0u);
     Diagnostics diagnostics(*scene.sources);
-    // What the shape says itself wins, then the innermost Attribute.
+    // The shape's own parameters win, then those of the innermost Attribute.
     EXPECT_EQ(inner.parameters.get_float("alpha", 0.0f, diagnostics), 1.0f);
     EXPECT_EQ(inner.parameters.get_float("radius", 0.0f, diagnostics), 4.0f);
     const ShapeDescription& outer = scene.shapes[1];

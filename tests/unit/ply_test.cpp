@@ -1,4 +1,4 @@
-// Reads PLY meshes of every format from memory, and tells what is wrong with damaged ones.
+// Reads PLY meshes of every format from memory, and reports errors in damaged ones.
 #include "core/scene/ply.h"
 
 #include "core/error.h"
@@ -91,7 +91,7 @@ std::string binary(bool big, const std::string& index_type = "int", bool is_shor
     return bytes;
 }
 
-// A file that takes the shortest way through the reader.
+// A file that the reader handles by its fastest path.
 std::string usual(const std::string& more = "") {
     std::string bytes =
         "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
@@ -165,7 +165,7 @@ TEST(Ply, ReadsFromAFile) {
     const std::string path = folder / "mesh.ply";
     std::ofstream(path, std::ios::binary) << usual();
     EXPECT_EQ(read_ply(path).triangles.size(), 3u);
-    std::ofstream(path, std::ios::binary) << gzip(usual());  // told by its bytes, not by its name
+    std::ofstream(path, std::ios::binary) << gzip(usual());  // recognised by its bytes, not by its name
     EXPECT_EQ(read_ply(path).triangles.size(), 3u);
     std::remove(path.c_str());
     EXPECT_THROW(read_ply(path), InputError);
@@ -174,7 +174,7 @@ TEST(Ply, ReadsFromAFile) {
 }
 
 TEST(Ply, EveryTruncationIsAnError) {
-    // The ascii file's last number may be cut without notice where what is left is a number, too.
+    // The ascii file's last number may be cut without notice if the rest is a number, too.
     for (const std::string& whole : {usual(), binary(true), binary(false), kAscii.substr(0, kAscii.size() - 1)})
         for (size_t size = 0; size < whole.size(); ++size)
             EXPECT_NE(error_of(whole.substr(0, size)), "no error") << "cut at byte " << size;
@@ -213,7 +213,7 @@ TEST(Ply, RefusesNumbersThatAreNotFinite) {
         << error_of(bytes);
 }
 
-// What is wrong with them, the shape tells, and goes on without them.
+// The shape reports errors in these, and continues without them.
 TEST(Ply, PassesNormalsOnThatAreNotFinite) {
     std::string bytes = binary(false);
     const PlyMesh good = read_ply_bytes("mesh.ply", bytes);

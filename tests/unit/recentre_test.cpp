@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* kFilm = "Film \"rgb\" \"integer xresolution\" 4 \"integer yresolution\" 4\n";
 
-// A scene of everything that has a place in the world, moved by x along each axis.
+// A scene of everything that has a position in the world, moved by x along each axis.
 BuiltText moved(double x, const std::string& more = {}) {
     return build_text(
         fmt::format("LookAt {0} {0} {1}  {0} {0} {0}  0 1 0\nCamera \"perspective\"\n{2}WorldBegin\n"
@@ -39,7 +39,7 @@ TEST(Recentre, AScenesPlaceIsNotRounded) {
     EXPECT_EQ(here.scene().lights[0].v0, there.scene().lights[0].v0);
     for (size_t i = 0; i < here.scene().texture_ops.size(); ++i)
         EXPECT_EQ(here.scene().texture_ops[i].m0, there.scene().texture_ops[i].m0);
-    // The camera's is an inverse, which doubles round at 1e6.
+    // The camera's transform is an inverse, which doubles round at 1e6.
     EXPECT_NEAR(there.scene().record.camera.to2.w, 4.0f, 1e-6f);
     EXPECT_NEAR(there.scene().record.camera.to0.w, 0.0f, 1e-6f);
 }

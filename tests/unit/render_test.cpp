@@ -34,7 +34,7 @@ RenderRequest request_of(const std::string& integrator = "path", uint64_t passes
     return request;
 }
 
-// Does what it is told to where progress is reported.
+// Calls a function when progress is reported.
 class Listener final : public RenderObserver {
  public:
     std::function<void(const RenderProgress&)> on_progress;
@@ -43,7 +43,7 @@ class Listener final : public RenderObserver {
     void progress(const RenderProgress& progress, const Film&) override {
         if (on_progress) on_progress(progress);
     }
-    // Once: the next run is not meant.
+    // Once: the interruption does not apply to the next run.
     void interrupt_at(uint64_t passes) {
         on_progress = [this, passes](const RenderProgress& progress) {
             if (progress.passes < passes) return;
@@ -115,7 +115,7 @@ TEST(Render, WhatIsWrongWithARequestIsAnError) {
     expect(with([](RenderRequest& r) { r.scene = SceneSource::of_file("/none.pbrt"); }), "/none.pbrt");
 }
 
-// Photon maps keep state from pass to pass, the others none.
+// Photon maps keep state from pass to pass; other integrators have none.
 class Interrupted : public testing::TestWithParam<const char*> {};
 
 TEST_P(Interrupted, TheImageIsWhatWasDone) {
@@ -241,7 +241,7 @@ INSTANTIATE_TEST_SUITE_P(Backends, TwoThreads, testing::ValuesIn(usable_backends
     return name;
 });
 
-// What docs/stats.md says of each; a new integrator is to be added here.
+// The statements of docs/stats.md about each; add new integrators here.
 TEST(ErrorRateOf, EachIntegratorIsWhatTheorySays) {
     const std::map<std::string, ErrorRate> expected = {{"path", ErrorRate::of_samples()},
                                                        {"ao", ErrorRate::of_samples()},

@@ -14,7 +14,7 @@ namespace {
 
 using namespace kernel;
 
-// A triangle with the material given, and the textures before it.
+// A triangle with the given material, preceded by the given textures.
 BuiltText build_textured(const std::string& textures, const std::string& material, const std::string& directory = ".") {
     return build_text("Camera \"perspective\"\nWorldBegin\n" + textures + "\n" + material +
                           "\nShape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer indices\" [ 0 1 2 ]\n",
@@ -190,7 +190,7 @@ TEST(TextureBuilder, OneFileIsLoadedOnce) {
 
 class StoredImage : public testing::TestWithParam<Image::Storage> {};
 
-// What a kernel would decode is what the image says, to the format's precision.
+// A kernel decodes the image's values, to the precision of the format.
 TEST_P(StoredImage, KeepsItsValues) {
     for (const bool grey : {false, true})
         for (const TexelEncoding::Kind kind :

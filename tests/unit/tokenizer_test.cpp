@@ -29,7 +29,7 @@ NumberStatus status_of_float(std::string_view text, float& value) {
     return result.status;
 }
 
-// What std::from_chars says, which is correctly rounded.
+// The result of std::from_chars, which is correctly rounded.
 float expected_float(std::string_view text) {
     float value = 0.0f;
     std::from_chars(text.data(), text.data() + text.size(), value);
@@ -186,7 +186,7 @@ TEST(Sources, ShowTheLineWithACaret) {
     EXPECT_EQ(sources.excerpt({file, 0}), "first\n^");
     EXPECT_EQ(sources.excerpt({file, 16}), " x = \xc3\xa4\xc3\xb6 y\n        ^");  // below the y: counted in characters
     EXPECT_EQ(sources.excerpt({file, 1000}), "last\n    ^");
-    // Long lines are cut around the place, with the caret still below it.
+    // Long lines are cut around the location, with the caret still below it.
     const std::string line = std::string(500, 'a') + "X" + std::string(500, 'b');
     const uint32_t longer = sources.add_owned("c", line);
     const std::string excerpt = sources.excerpt({longer, 500});
