@@ -8,12 +8,12 @@ from pathlib import Path
 from support.programs import SCENES, Work, arguments_of, build, render, run, write
 
 GOAL = 0.01  # more instructions than a build that never heard of the other effects
-# Each calls for other effects; effects_path.radiance.h has a build for exactly what each calls for.
+# Each needs different effects; effects_path.radiance.h has a build for exactly the effects of each.
 CPU_SCENES = ["diffuse", "dielectric-smooth", "textures", "coated-diffuse", "infinite-image"]
 
 
 def instructions(program: Path, scene: Path, size: str, which: str) -> dict:
-    """Instructions of the measured kernel under callgrind, Embree's apart: it traces the same rays in either build."""
+    """Instructions of the measured kernel under callgrind, apart from Embree, which traces the same rays in both."""
     with tempfile.TemporaryDirectory() as scratch:
         profile = Path(scratch) / "callgrind.out"
         command = ["valgrind", "--tool=callgrind", "--collect-atstart=no", "--toggle-collect=lampyris_measured_kernel"]
@@ -31,7 +31,7 @@ def instructions(program: Path, scene: Path, size: str, which: str) -> dict:
                 if name:
                     objects.setdefault(number, name)
             elif line.startswith("calls="):
-                called = True  # the next line is the cost of what was called, counted where it arises
+                called = True  # the next line is the callee's cost, which is counted in the callee
             elif re.match(r"[0-9+*-]", line):
                 if not called:
                     counts[inside] += int(line.split()[-1])
@@ -76,7 +76,7 @@ def on_cpu(folder: Path, quick: bool) -> list[dict]:
 def on_vulkan(folder: Path, repeats: int) -> list[dict]:
     """Shaders for the scene's effects only against shaders for all: size, and time in turns.
 
-    The shader for all takes minutes to compile, which is why it is not a part of every run.
+    The shader for all effects takes minutes to compile, so it is not a part of every run.
     """
     print(
         f"{'Vulkan: scene':20} {'SPIR-V kB':>10} {'all':>6} {'compile s':>10} {'all':>6}"

@@ -29,7 +29,7 @@ class Case:
     reference: Path | None = None
 
     def integrator(self) -> str:
-        """The integrator that every structure is used by."""
+        """The integrator that uses each structure."""
         return f"sppm:schedule=memoryless,photonsperiteration={self.photons}"
 
 

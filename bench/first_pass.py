@@ -9,7 +9,7 @@ from pathlib import Path
 from support.programs import ROOT, SCENES, arguments_of, build, run, write
 
 GOAL_S = 60
-# The scenes' own integrators, but for this one, which is slow to compile by any.
+# The scenes' own integrators, except for this scene, which is slow to compile with any.
 COATS, INTEGRATORS = SCENES / "reference/coated-diffuse.pbrt", ["path", "sppm", "ppm", "photon_map"]
 
 
@@ -20,7 +20,7 @@ def scenes() -> list[Path]:
 
 
 def first_pass(folder: Path, scene: Path, integrator: str | None) -> dict:
-    """One sample a pixel of a tiny image, and what it took, with the largest shader and its seconds of waiting."""
+    """Renders one sample a pixel of a tiny image; returns its cost, the largest shader and the seconds of waiting."""
     with tempfile.TemporaryDirectory() as scratch:
         os.environ["MESA_SHADER_CACHE_DIR"] = scratch
         statistics = Path(scratch) / "stats.json"

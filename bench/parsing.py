@@ -21,7 +21,7 @@ def main() -> None:
     )
     parser.add_argument("--json", type=Path, help="where to write the results")
     arguments = parser.parse_args()
-    # Configuring again finds Google Benchmark where it was installed since.
+    # Configuring again finds Google Benchmark if it was installed in the meantime.
     subprocess.run(["cmake", arguments.build], check=True, stdout=subprocess.DEVNULL)
     subprocess.run(
         ["cmake", "--build", arguments.build, "--target", "parse_bench"], check=True, stdout=subprocess.DEVNULL

@@ -17,15 +17,15 @@ def fit(points: list[tuple[float, float]]) -> float:
 
 
 def best(folder, work: Work, repeats: int, *options: str) -> dict:
-    """The fastest of a few runs: what else the machine does only ever adds time."""
+    """The fastest of a few runs, because other work of the machine can only add time."""
     return min((render(folder, work, *options) for _ in range(repeats)), key=lambda result: result["wall_s"])
 
 
 def triangles(folder, repeats: int, largest: int) -> dict:
     """Cost per sample against the number of triangles; the same hills, cut finer.
 
-    The cost is in processor time on one thread, which another program's work disturbs less than the clock on the wall:
-    that of many samples less that of one, so that set-up cancels.
+    The cost is in processor time on one thread, which other programs disturb less than wall-clock time. It is the time
+    of many samples minus that of one, so that set-up cancels.
     """
     print(
         f"{'triangles':>10} {'CPU us/sample':>14} {'rays per sample':>16} {'parse s':>8}"

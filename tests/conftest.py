@@ -1,4 +1,4 @@
-"""Options of the Python tests: --regex picks by name, as `ctest -R` does; `long` marks what only --long runs."""
+"""Options of the Python tests: --regex selects by name, like `ctest -R`; `long` marks tests that only --long runs."""
 
 import os
 import re

@@ -151,7 +151,7 @@ def main():
     folder.mkdir(parents=True, exist_ok=True)
     budget = ["--passes", options.passes] if options.passes else ["--time", f"{options.seconds}s"]
 
-    # First, as it compiles what the others run again.
+    # First, because it compiles kernels that the others use again.
     print(
         f"Rendering {AGREEMENT_PASSES} passes of sppm on each backend; Vulkan compiles its shaders at first", flush=True
     )

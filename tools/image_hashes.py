@@ -40,7 +40,7 @@ def hash_of(image: Path) -> str:
 
 
 def render(program: Path, scene: Path, integrator: str, backend: str, folder: Path) -> str:
-    """The hash of an image, or the program's last words where there is none."""
+    """The hash of an image, or the program's last output if there is no image."""
     image = folder / "image.exr"
     image.unlink(missing_ok=True)
     command = [

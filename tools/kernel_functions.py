@@ -10,7 +10,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 KERNELS = ROOT / "src/core/kernel"
 MATERIALS = ROOT / "src/materials"
-# What compilers and backends need, not who writes a kernel.
+# Needed by compilers and backends, but not by authors of kernels.
 LEFT_OUT = {"prelude.h", "cpp_kernel.h", "trace_bvh2.h", "trace_ray_query.h"}
 HEAD = """# Functions that kernels may call
 
@@ -36,7 +36,7 @@ def functions(text: str) -> list[tuple[str, str]]:
 
 
 def purpose(text: str) -> str:
-    """What the comment at the file's beginning says, its first paragraph."""
+    """The first paragraph of the comment at the file's beginning."""
     lines = []
     for line in text.split("\n"):
         if not line.startswith("// "):
@@ -57,7 +57,7 @@ def headers() -> list[Path]:
 
 
 def title(path: Path) -> str:
-    """How a kernel includes the header; for those in core/kernel, its name alone."""
+    """The header as a kernel includes it; for those in core/kernel, its name alone."""
     if path.parent == KERNELS:
         return path.name
     return str(path.relative_to(MATERIALS.parent)).removesuffix(".in")

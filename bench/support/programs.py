@@ -31,7 +31,7 @@ def generated_folder() -> Path:
 
 
 def build(folder: Path, *targets: str) -> None:
-    """Bring targets up to date; a failure shows the compiler's words."""
+    """Bring targets up to date; a failure shows the compiler's output."""
     command = ["cmake", "--build", str(folder), "--target", *targets]
     result = subprocess.run(command, capture_output=True, text=True, check=False)
     if result.returncode != 0:
@@ -43,7 +43,7 @@ def build(folder: Path, *targets: str) -> None:
 
 
 def run(command: list) -> subprocess.CompletedProcess:
-    """Run a program to its end; where it fails, so does the benchmark, with the program's words."""
+    """Run a program to its end; if it fails, so does the benchmark, with the program's output."""
     words = [str(word) for word in command]
     result = subprocess.run(words, capture_output=True, text=True, check=False)
     if result.returncode != 0:
@@ -53,7 +53,7 @@ def run(command: list) -> subprocess.CompletedProcess:
 
 @dataclass
 class Work:
-    """What is rendered: a scene, cut down to `size` pixels and `samples` per pixel."""
+    """A scene to render, reduced to `size` pixels and `samples` per pixel."""
 
     scene: Path
     size: str
@@ -61,7 +61,7 @@ class Work:
 
     @property
     def name(self) -> str:
-        """The scene's folder, or its file's name where a folder holds many."""
+        """The name of the scene's folder, or of its file if the folder has several."""
         return self.scene.parent.name if self.scene.stem == "scene" else self.scene.stem
 
 
@@ -78,7 +78,7 @@ def render(folder: Path, work: Work, *options: str) -> dict:
 
 
 def write(path: Path | None, name: str, **content) -> None:
-    """Write the results as JSON, and how busy the machine was: on a busy one, only ratios taken in turns hold."""
+    """Write the results as JSON, and how busy the machine was: on a busy one, only alternating ratios are valid."""
     machine = {"processors": os.cpu_count(), "load": os.getloadavg()[0]}
     print(f"(load {machine['load']:.1f} on {machine['processors']} processors)")
     if path:

@@ -66,7 +66,7 @@ def write_ply(path: Path, x: numpy.ndarray, y: numpy.ndarray, uv: bool) -> int:
 
 
 def terrain(triangles: int, glossy: bool = False) -> Path:
-    """The scene file of a terrain with at least so many triangles, written where it is not there yet."""
+    """The scene file of a terrain with at least this many triangles, written if it does not exist."""
     name = f"terrain-{triangles}" + ("-glossy" if glossy else "")
     scene = generated_folder() / f"{name}.pbrt"
     if scene.exists():

@@ -52,7 +52,7 @@ def test_json_has_the_keys_of_the_contract(run):
         assert row["construction_ns_per_point"] > 0 and row["query_ns"] > 0
     assert data["rows"][1]["parameters"]["slots"] == "2"
     assert data["rows"][0]["points"] == 1000 and data["rows"][3]["points"] == 2000
-    # An exact map and an unbiased one find about the same: ten photons a query were asked for, some beyond the edge.
+    # An exact map and an unbiased one find about the same number: ten per query were requested, some beyond the edge.
     assert 7 < data["rows"][2]["photons_found_mean"] < 11
     assert 7 < data["rows"][3]["photons_found_mean"] < 11
 

@@ -1,4 +1,4 @@
-"""`lampyris compare`: what it prints, what it refuses, and its exit codes, as a user or a script meets them."""
+"""`lampyris compare`: its output, its errors, and its exit codes, as users and scripts see them."""
 
 import json
 import math

@@ -1,4 +1,4 @@
-"""What tests of the program share."""
+"""Fixtures for tests of the program."""
 
 import pytest
 
@@ -8,7 +8,7 @@ from support.render_program import SCENE
 
 @pytest.fixture(scope="session")
 def installed(build_dir, tmp_path_factory):
-    """Where Lampyris is installed, for plugins to be built against."""
+    """A folder where Lampyris is installed, for building plugins."""
     prefix = tmp_path_factory.mktemp("an installation") / "lampyris"
     checked("cmake", "--install", build_dir, "--prefix", prefix)
     return prefix
@@ -16,7 +16,7 @@ def installed(build_dir, tmp_path_factory):
 
 @pytest.fixture
 def scene(tmp_path):
-    """A small scene's file, where a test may change it."""
+    """The file of a small scene, which a test may change."""
     path = tmp_path / "scene.pbrt"
     path.write_text(SCENE)
     return path

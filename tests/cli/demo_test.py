@@ -44,7 +44,7 @@ def test_the_demo_writes_images_figures_and_a_page(source_dir, program, tmp_path
 
     text = (tmp_path / "index.html").read_text()
     assert not re.search(r"""(src|href)=["'](?!data:)""", text)  # nothing is loaded from elsewhere
-    assert not re.search(r"\$[a-z]", text)  # no place in the template was left empty
+    assert not re.search(r"\$[a-z]", text)  # the template was filled in completely
     assert "dielectric" in text
     page = Page()
     page.feed(text)

@@ -1,4 +1,4 @@
-"""`lampyris describe` and `lampyris plugins`: what they print, what they refuse, and their exit codes."""
+"""`lampyris describe` and `lampyris plugins`: their output, their errors, and their exit codes."""
 
 import json
 import subprocess

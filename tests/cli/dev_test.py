@@ -1,4 +1,4 @@
-"""./dev itself: what it says, what it refuses, and that a second run has nothing to set up."""
+"""./dev itself: its output, its errors, and that a second run has nothing to set up."""
 
 import re
 import subprocess
@@ -69,7 +69,7 @@ def test_packages_are_listed_by_group_and_only_once(source_dir):
 
 
 def test_set_up_is_quick_and_silent_when_all_is_there(source_dir):
-    """./dev test has set everything up before this test runs, so asking again must cost next to nothing."""
+    """./dev test has set everything up before this test runs, so another check must take nearly no time."""
     script = (
         f"cd {source_dir} && say() {{ echo SAID; }} && fail() {{ exit 1; }} && . tools/setup.sh"
         " && setup_packages build test && setup_venv"
@@ -148,4 +148,4 @@ def test_lists_need_no_build(source_dir, arguments, listed):
     done = dev(source_dir, *arguments)
     assert done.returncode == 0, done.stderr
     assert re.search(rf"^{listed} +\S", done.stdout, re.MULTILINE)
-    assert done.stderr == ""  # what sets up or builds says so there
+    assert done.stderr == ""  # set-up and building are reported there

@@ -1,4 +1,4 @@
-"""What the README and the guides tell people to type works, word for word, and their links lead somewhere."""
+"""The commands in the README and the guides work, word for word, and links lead to existing targets."""
 
 import os
 import re

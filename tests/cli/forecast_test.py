@@ -1,4 +1,4 @@
-"""`lampyris render` says what the next halving of the error takes, and where the estimate cannot be trusted."""
+"""`lampyris render` predicts the next halving of the error, and reports an estimate that cannot be trusted."""
 
 import re
 import signal
@@ -17,10 +17,10 @@ def test_statistics_and_last_lines_have_the_forecast(program, scene, tmp_path):
     assert done.returncode == 0, done.stderr
     stats = stats_of(file)
     first, last = stats["convergence"][0], stats["convergence"][-1]
-    assert [first[key] for key in KEYS] == [None, None, None, True]  # one sample tells nothing
+    assert [first[key] for key in KEYS] == [None, None, None, True]  # one sample has no variance
     assert [stats[key] for key in KEYS] == [last[key] for key in KEYS]
     assert 0 < last["halving_low_s"] < last["halving_s"] < last["halving_high_s"]
-    # Samples are averaged: about as much work as was done, whatever the machine.
+    # Samples are averaged: halving takes about as much work as was done, on any machine.
     assert last["halving_low_s"] < 3 * stats["wall_s"]
     assert last["halving_high_s"] > stats["wall_s"] / 3
     assert last["estimate_unstable"] is False
@@ -31,7 +31,7 @@ def test_statistics_and_last_lines_have_the_forecast(program, scene, tmp_path):
 
 
 def test_an_estimate_that_misses_light_is_said_to_be_unstable(program, source_dir, tmp_path):
-    # A lamp in a bulb of glass: path tracing meets it in one path of some thousand, and its variance tells nothing yet.
+    # A lamp in a bulb of glass: one in thousands of paths finds it, so the variance is not meaningful yet.
     file, image = tmp_path / "stats.json", tmp_path / "o.exr"
     lamp = source_dir / "scenes/reference/sds-lamp.pbrt"
     small = ["--resolution", "32x32", "--stats", file]
@@ -48,7 +48,7 @@ def test_an_estimate_that_misses_light_is_said_to_be_unstable(program, source_di
 
 
 def test_what_all_passes_share_is_told(program, source_dir, tmp_path):
-    # The variance between passes says nothing of photons and hit points that stay.
+    # The variance between passes does not include the error of photons and hit points that are kept.
     diffuse = source_dir / "scenes/reference/diffuse.pbrt"
     file = tmp_path / "stats.json"
     base = [program, diffuse, "-o", tmp_path / "o.exr", "--resolution", "32x32", "--passes", "20", "--stats", file]
@@ -69,7 +69,7 @@ def test_what_all_passes_share_is_told(program, source_dir, tmp_path):
 @pytest.mark.parametrize(
     ("name", "options", "looks"),
     [
-        # Caustics of a smooth ball, which path tracing meets by chance: the means of fireflies in the denominators made
+        # Caustics of a smooth ball, which paths find by chance: the means of fireflies in the denominators made
         # the estimate 6 to 29 times too low.
         ("reference/conductor-smooth", ["--integrator", "path"], 6),
         ("reference/dielectric-smooth", ["--integrator", "path"], 6),
@@ -92,7 +92,7 @@ def test_the_estimate_is_the_error_against_the_reference(program, source_dir, tm
 
 
 def test_an_unstable_estimate_reaches_no_target(program, source_dir, tmp_path):
-    # A point light behind glass: no path meets it, the picture is black, and the estimate is 0.
+    # A point light behind glass: no path finds it, the picture is black, and the estimate is 0.
     file, scene = tmp_path / "stats.json", source_dir / "scenes/reference/sds-point.pbrt"
     base = [program, scene, "-o", tmp_path / "o.exr", "--resolution", "32x32", "--integrator", "path", "--stats", file]
     done = run(*base, "--target-error", "0.06", "--spp", "64")

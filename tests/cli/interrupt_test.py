@@ -16,7 +16,7 @@ SLACK = 8.0  # for one that does
 
 
 def wait_until_caught(process, signal_number):
-    """Until the program catches the signal: while it is loaded, it would end by it."""
+    """Waits until the program handles the signal, which would otherwise kill it while it is loading."""
     deadline = time.monotonic() + 60
     caught = 0
     while not caught >> (signal_number - 1) & 1:
@@ -79,7 +79,7 @@ def test_a_shader_that_compiles_is_interrupted(program, scene, tmp_path):
 
 @pytest.mark.parametrize("backend", ["cpu", "vulkan"])
 def test_a_long_pass_is_cut_short(program, scene, tmp_path, backend):
-    """What the passes before it have found is written."""
+    """The image of the passes before the signal is written."""
     image, file = tmp_path / "o.pfm", tmp_path / "stats.json"
     arguments = command(program, scene, "-o", image, "--stats", file, "--integrator", "path", "--time", "10min")
     arguments += ["--resolution", "1200x800", "--backend", backend]
@@ -135,11 +135,11 @@ def test_standard_error_that_takes_nothing(program, scene, tmp_path, sink):
 
 @pytest.mark.parametrize("closed", ["2>&-", ">&- 2>&-", "<&- >&- 2>&-"])
 def test_closed_streams(program, scene, tmp_path, closed):
-    """An image that is opened next must not become what messages are written to."""
+    """An image that is opened next must not get the descriptor of standard error."""
     image, right = tmp_path / "o.pfm", tmp_path / "right.pfm"
     assert run(program, scene, "-o", right).returncode == 0
     done = subprocess.run(f'"{program}" render "{scene}" -o "{image}" {closed}', shell=True, timeout=60, check=False)
-    assert done.returncode == (2 if ">&- 2" in closed else 0)  # what was meant for standard output is lost
+    assert done.returncode == (2 if ">&- 2" in closed else 0)  # the text for standard output is lost
     assert image.read_bytes() == right.read_bytes()
 
 

@@ -1,6 +1,6 @@
-"""The material guide: its files are the example's, the generator takes them and says what is wrong with others.
+"""The material guide: its files are those of the example; the generator accepts them, and reports errors in others.
 
-With --long, Lampyris is built with them and gives the answer that the scene's comment derives, on both backends.
+With --long, Lampyris is built with them and gives the result that the scene's comment derives, on both backends.
 """
 
 import json
@@ -53,7 +53,7 @@ def test_the_generator_takes_the_guides_folder(source_dir, generate, tmp_path):
     assert '#include "orennayar/orennayar.material.h"' in dispatch
     for function in ["make", "eval", "sample", "is_specular", "chooses_lobe", "transmits", "albedo", "visible_action"]:
         assert dispatch.count(f"orennayar_{function}(") == 1, function
-    # Coats are evaluated and sampled from one place, whichever they are: GLSL compilers inline every call.
+    # All coats share one call for evaluating and one for sampling, because GLSL compilers inline every call.
     assert dispatch.count("coat_eval(") == dispatch.count("coat_sample(") == 1
 
 

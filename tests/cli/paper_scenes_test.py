@@ -1,4 +1,4 @@
-"""The scenes of the photon-mapping paper: made again, counted, and checked for what refraction needs of a mesh."""
+"""The scenes of the photon-mapping paper: generated again, counted, and checked for what refraction requires."""
 
 import gzip
 import importlib.util
@@ -12,7 +12,7 @@ import pytest
 
 SCENES = ["box", "cognac", "kitchen", "pool", "torus"]
 WRITTEN_ABOUT = {"box": 4000, "cognac": 16000, "pool": 122000, "kitchen": 44000}  # triangles, in the paper
-# Surfaces closer than this coincide, as far as floats and rays tell: the smallest gap that the scenes leave is five
+# Surfaces closer than this coincide, for floats and rays: the smallest gap in the scenes is five
 # times as wide (0.5 mm in a scene in metres, 0.1 mm in one in centimetres).
 COINCIDENT = 1e-4
 PARALLEL = 0.99  # cosine of the angle between surfaces that could be the same one; those that cross meet at more
@@ -63,7 +63,7 @@ def test_generator_makes_the_same_files_again(folder, tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == names
     for name in names:
         made, kept = (tmp_path / name).read_bytes(), (folder / name).read_bytes()
-        # What is compressed must agree to the byte; how small it gets is zlib's affair, and changes with its version.
+        # The uncompressed data must agree to the byte; the compressed size depends on zlib's version.
         assert gzip.decompress(made) == gzip.decompress(kept), name
         assert made[4:8] == bytes(4), f"{name} holds the time when it was made"
 
@@ -88,7 +88,7 @@ def test_bodies_are_closed(generator, meshes):
         corners = points[faces]
         index = welded(points)[faces]
         directed = edges(index)
-        # Each edge once in each direction: two triangles share it, and agree on which side is out.
+        # Each edge once in each direction: two triangles share it, and agree on which side is outside.
         forward = np.unique(directed, axis=0)
         assert len(forward) == len(directed), body
         assert np.array_equal(forward, np.unique(directed[:, ::-1], axis=0)), body
@@ -106,7 +106,7 @@ def test_normals_point_out_of_their_faces(meshes):
 
 
 def near_pairs(places, low, high, cell):
-    """Pairs (place, box) where the place lies in a grid cell that the box touches."""
+    """Pairs (point, box) where the point lies in a grid cell that the box touches."""
     first, last = (np.floor(corner / cell).astype(np.int64) for corner in (low, high))
     spans = last - first + 1
     counts = spans.prod(axis=1)
@@ -156,7 +156,7 @@ def test_no_interface_coincides_with_another_surface(generator, meshes):
 
 
 def test_program_reads_the_scene(program, folder, meshes):
-    # Without --skip-unsupported once media are supported; until then they are what is left out, and nothing else is.
+    # Without --skip-unsupported if media are supported; otherwise only media are left out.
     command = [program, "describe", folder / "scene.pbrt", "--json", "--skip-unsupported"]
     done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 0, done.stderr

@@ -1,4 +1,4 @@
-"""Scenes that name pbrt-v4's integrators: they render without --skip-unsupported, and what is different is said."""
+"""Scenes that name pbrt-v4's integrators render without --skip-unsupported, and a note explains differences."""
 
 import json
 import subprocess
@@ -7,7 +7,7 @@ import pytest
 
 from support.render_program import SCENE, run, stats_of
 
-# Every parameter that pbrt-v4 knows, with another value than its default; and what renders.
+# Every parameter of pbrt-v4 with a value that is not its default, and the integrator that renders.
 INTEGRATORS = {
     "volpath": ("path", '"integer maxdepth" 2 "string lightsampler" "power" "bool regularize" false'),
     "simplepath": ("path", '"integer maxdepth" 2 "bool samplelights" false "bool samplebsdf" false'),
@@ -53,7 +53,7 @@ def test_pbrts_names_and_parameters_render(program, scene, tmp_path, name):
     for note in replaced:
         assert note.startswith(f"{scene}:6:12: ") and f'"{ours}"' in note and f'"{name}"' in note
         assert f"note: {note}" in done.stderr
-    # What is not at its default and has no effect is told, each with its place.
+    # Parameters that are not at their default but have no effect are reported, each with its location.
     silent = {"maxdepth", "maxdistance", "photonsperiteration", "radius", "regularize"}
     given = {word.split()[1] for word in parameters.split('"') if " " in word.strip() and word.strip().count(" ") == 1}
     told = {note.split('"')[1] for note in result["notes"] if "has no effect: " in note}
@@ -135,7 +135,7 @@ def test_path_says_that_it_absorbs_and_how_to_choose(program, scene, tmp_path):
     scene.write_text(tea + SCENE.replace('"path"', '"path" "string media" "off"'))
     assert notes() == ([], clear)
     assert notes("--integrator", "path:media=on")[1] == absorbed
-    # volpath is asked to absorb: nothing to say about media.
+    # volpath simulates absorption, so there is no note about media.
     scene.write_text(tea + SCENE.replace('"path"', '"volpath"'))
     told, image_of_volpath = notes()
     assert len(told) == 1 and "renders in the place" in told[0] and image_of_volpath == absorbed

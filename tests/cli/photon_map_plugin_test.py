@@ -1,5 +1,5 @@
-"""A photon map of one's own, built outside of the tree against an installed Lampyris: it meets the consumers that
-Lampyris has, on both backends."""
+"""A photon map that is built outside of the tree against an installed Lampyris works with Lampyris's consumers, on
+both backends."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""Photon mapping takes the same memory however many passes there are."""
+"""The memory of photon mapping does not depend on the number of passes."""
 
 import json
 import subprocess
@@ -7,7 +7,7 @@ import pytest
 
 
 def statistics(program, folder, photons, passes):
-    """Statistics of a small picture with so many photons a pass."""
+    """Statistics of a small picture with this many photons per pass."""
     scene = folder / "scene.pbrt"
     scene.write_text(
         """
@@ -39,7 +39,7 @@ def grown(program, folder, photons, passes):
 
 def test_memory_does_not_grow_with_passes(program, tmp_path):
     ratio, many = grown(program, tmp_path, 100_000, 60)
-    # What a pass keeps: 32 bytes a photon stored and what its map adds, and a few hundred a pixel.
+    # Memory of a pass: 32 bytes per stored photon plus the map's share, and a few hundred bytes per pixel.
     assert ratio < 1.03, many["peak_memory_bytes"]
 
 

@@ -56,14 +56,14 @@ FIND = "find_package(Lampyris REQUIRED)\n"
 
 
 class Project:
-    """Plugins in folders of a project of theirs, and what they show."""
+    """Plugins in folders of a common project, and their results."""
 
     def __init__(self, installed, folder, generator, top, files):
         self.program = installed / "bin/lampyris"
         self.folder = folder
         write_files(folder, {"CMakeLists.txt": f"cmake_minimum_required(VERSION 3.25)\n{top}", "scene.pbrt": SCENE})
         write_files(folder, files)
-        # Nothing here is about speed.
+        # Speed does not matter here.
         configure(folder, installed, "-G", generator, "-DCMAKE_BUILD_TYPE=Debug")
         build(folder)
 
@@ -74,7 +74,7 @@ class Project:
         path.write_text(text.replace(old, new))
 
     def value(self, backend):
-        """What `flat` shows everywhere."""
+        """The value that `flat` shows in all pixels."""
         image = self.folder / "image.pfm"
         arguments = ["-o", image, "--plugin", self.folder / "build/flat/flat.so", "--backend", backend, "--quiet"]
         checked(self.program, "render", self.folder / "scene.pbrt", *arguments)
@@ -110,7 +110,7 @@ def test_an_edited_integrator_is_built_and_loads(installed, tmp_path, generator,
     build(project.folder)
     assert project.value("cpu") == project.value("vulkan") == 2
 
-    # The list of parameters; and a file more, which the kernel includes.
+    # The list of parameters, and another file, which the kernel includes.
     project.edit("flat/flat.params.h", "value, 1.0f,", "value, 3.0f,")
     project.edit("flat/flat.kernel.h", "2.0f *", "kMore *")
     project.edit("flat/flat.kernel.h", '"flat/flat.params.h"\n', '"flat/flat.params.h"\n#include "flat/more.h"\n')
@@ -129,7 +129,7 @@ def test_an_edited_photon_map_beside_another_plugin_is_built_and_loads(build_dir
     found = project.photons_found("cpu")
     assert found > 5
 
-    # Of the photons every other one, by a file more.
+    # Only every other photon, by another file.
     project.edit("every/every.gather.h", "++i", "i += kStep")
     project.edit("every/every.gather.h", 'gather.h"\n', 'gather.h"\n#include "every/step.h"\n')
     project.edit("every/CMakeLists.txt", "every.gather.h", "every.gather.h HEADERS step.h")
@@ -140,13 +140,13 @@ def test_an_edited_photon_map_beside_another_plugin_is_built_and_loads(build_dir
     assert project.photons_found("vulkan") == half
     assert project.value("cpu") == 1
 
-    # Another Lampyris is installed, whose headers are older than the plugins: all is built again, and only then.
+    # Another Lampyris is installed, whose headers are older than the plugins: only then is everything rebuilt.
     header = installed / "include/lampyris/core/plugin_abi.h"
     objects = len(list((project.folder / "build").rglob("*.o")))
     for change, again in [("", 0), ("// another\n", objects)]:
         header.write_text(header.read_text() + change)
         os.utime(header, (0, 0))
         checked("cmake", "--install", build_dir, "--prefix", installed)
-        checked("cmake", project.folder / "build")  # which a dry run would stop at
+        checked("cmake", project.folder / "build")  # a dry run would stop at this
         done = checked("cmake", "--build", project.folder / "build", "--", "-n")
         assert done.stdout.count("Building CXX object") == again

@@ -1,4 +1,4 @@
-"""docs/reference/README.md is what the program says of its plugins; who changes one changes the other."""
+"""docs/reference/README.md equals the program's description of its plugins: a change to one requires the other."""
 
 import re
 import subprocess
@@ -19,7 +19,7 @@ def test_the_page_of_kernel_functions_is_what_the_headers_say(source_dir):
     said = subprocess.run([sys.executable, tool], capture_output=True, text=True, timeout=60, check=True).stdout
     page = source_dir / "docs/reference/kernel-functions.md"
     assert page.read_text() == said, f"write it anew: python3 {tool} > {page}"
-    # None is missing: as many as lines that begin with FN.
+    # None is missing: there are as many as lines that begin with FN.
     kernels = source_dir / "src/core/kernel"
     materials = source_dir / "src/materials"
     left_out = {"prelude.h", "cpp_kernel.h", "trace_bvh2.h", "trace_ray_query.h"}

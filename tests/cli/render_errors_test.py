@@ -1,4 +1,4 @@
-"""`lampyris render`: what it refuses and with which exit code: of a scene, the command line, files and the machine."""
+"""`lampyris render`: errors and exit codes for scenes, the command line, files and the machine."""
 
 import os
 import subprocess

@@ -1,4 +1,4 @@
-"""`lampyris render`: images, statistics, budgets, interruption, as a user or a script meets them."""
+"""`lampyris render`: images, statistics, budgets, interruption, as users and scripts see them."""
 
 import itertools
 import json
@@ -56,7 +56,7 @@ def test_light_beyond_a_float_is_warned_of(program, tmp_path):
     stats = json.loads(stats_file.read_text())
     assert stats["non_finite_samples"] == 16 * 13  # the fourth sample of each pixel, and those after it
     assert stats["estimated_error"] is None
-    assert stats["passes"] == 16  # no target is reached by an error that is not known
+    assert stats["passes"] == 16  # an unknown error reaches no target
     for row in read_pfm(pfm)[2]:
         assert row == pytest.approx([1e38] * 12, rel=1e-6)
 
@@ -163,7 +163,7 @@ def test_statistics_have_the_keys_of_the_contract(program, scene, tmp_path):
     assert effects["quadrics"]["simulated"] is True
     convergence = stats["convergence"]
     assert [point["passes"] for point in convergence] == [1, 2, 4, 8]
-    assert convergence[0]["estimated_error"] is None  # one sample tells no variance
+    assert convergence[0]["estimated_error"] is None  # one sample has no variance
     assert convergence[-1]["estimated_error"] > 0
     assert all(a["wall_s"] <= b["wall_s"] for a, b in itertools.pairwise(convergence))
     assert "mse" not in convergence[0]
@@ -178,7 +178,7 @@ def test_a_reference_gives_the_error_over_time(program, scene, tmp_path):
     convergence = stats_of(file)["convergence"]
     assert all({"mse", "relmse"} <= set(point) for point in convergence)
     assert convergence[-1]["mse"] < convergence[0]["mse"] / 8
-    # The estimate from the variance means what the reference says, and compare says what render said.
+    # The estimate from the variance agrees with the reference, and compare with render.
     assert convergence[-1]["estimated_error"] == pytest.approx(convergence[-1]["relmse"], rel=0.4)
     compared = subprocess.run(
         [program, "compare", image, reference, "--json"], capture_output=True, text=True, check=False, timeout=60
@@ -227,7 +227,7 @@ def test_time_stops(program, scene, tmp_path):
     assert done.returncode == 0
     stats = stats_of(file)
     assert 1.5 < stats["wall_s"] < 3.0
-    assert stats["passes"] > 4  # time takes the place of the scene's number of samples
+    assert stats["passes"] > 4  # time replaces the scene's number of samples
     assert stats["interrupted"] is False
 
 
@@ -240,7 +240,7 @@ def test_passes_and_spp(program, scene, tmp_path):
 
 
 def wait_until_caught(process, signal_number):
-    """Until the program catches the signal: while it starts, it would end by it."""
+    """Waits until the program handles the signal, which would otherwise kill it while it starts."""
     deadline = time.monotonic() + 60
     caught = 0
     while not caught >> (signal_number - 1) & 1:

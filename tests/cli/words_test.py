@@ -1,4 +1,4 @@
-"""Words that newcomers bring along, help, limits and plurals."""
+"""Terms that newcomers know from other renderers, help, limits and plurals."""
 
 import re
 import subprocess

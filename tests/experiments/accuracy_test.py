@@ -25,7 +25,7 @@ FORECAST = ("halving_s", "halving_low_s", "halving_high_s")
 
 
 class Records:
-    """A store whose records are computed from the run: `error_of` tells relMSE after a number of passes of 0.01 s."""
+    """A store whose records are computed from the run: `error_of` is the relMSE after a number of passes of 0.01 s."""
 
     def __init__(self, error_of):
         self.error_of = error_of
@@ -53,7 +53,7 @@ class Records:
             "integrator": {"name": name, "parameters": {k: float(v) for k, v in parameters.items()}},
             "photon_map": {"name": "sorted_grid", "parameters": {"slots": 1.0}} if photons else None,
             "passes": last,
-            "convergence": [*entries, entries[-1]],  # the program tells the last look twice
+            "convergence": [*entries, entries[-1]],  # the program reports the last point twice
         }
         record["compare"] = {"relmse": told(last), "flip": 0.1}
         return record
@@ -75,7 +75,7 @@ def planned(tmp_path):
 
 @pytest.fixture
 def same_curves(planned, monkeypatch):
-    """Lets `summary` and `forecast` take the runs of a small `curves`."""
+    """Makes `summary` and `forecast` use the runs of a small `curves`."""
 
     def make(name, **changes):
         plan = planned("curves", **changes)
@@ -253,7 +253,7 @@ def test_estimates_that_are_far_off_should_be_called_unstable(same_curves, tmp_p
 
 
 def test_images_of_known_bias_and_variance_are_taken_apart(planned, monkeypatch, tmp_path):
-    """Noise of exactly theory's variance, and theory's bias: verdicts agree. A bias that does not fall is told."""
+    """Noise of exactly theory's variance, and theory's bias: verdicts agree. A bias that does not fall is reported."""
     count, shape = 12, (16, 16)
     plan = planned("slopes", seeds=count, alphas=[0.7])
     distance = slopes.distances(shape, plan["smooth"]["foot"]).ravel()
@@ -326,7 +326,7 @@ def test_the_best_value_of_a_knob_is_told_beyond_the_spread(planned, monkeypatch
     ("bias", "holds"),
     [
         ('bias = "stays", ', ["yes", "yes"]),
-        ('bias = "vanishes", ', ["yes", "partly"]),  # its alpha says that it shall be faster
+        ('bias = "vanishes", ', ["yes", "partly"]),  # according to its alpha, it should be faster
         ("", ["yes", "yes"]),
         ('bias = "none", ', ["partly", "yes"]),  # a claim that is checked
     ],
@@ -347,7 +347,7 @@ def test_a_biased_method_spoils_no_verdict(planned, no_images, tmp_path, bias, h
 
 
 def test_pairs_see_what_spreads_hide(same_curves, tmp_path):
-    """Errors differ by 1.2 from seed to seed, and methods by 1.05 with each seed: only pairs tell them apart."""
+    """Errors differ by 1.2 from seed to seed, and methods by 1.05 for each seed: only pairs can distinguish them."""
     plan = same_curves("summary", **SMALL | {"seeds": 6})
     scale = {1: 0.7, 2: 1.0, 3: 1.3, 4: 0.8, 5: 1.2, 6: 1.1}
 

@@ -1,4 +1,4 @@
-"""What each effect costs: every effect has its scene, and ratios, verdicts and tables say what the runs' records do."""
+"""The cost of each effect: every effect has a scene, and ratios, verdicts and tables follow from the runs' records."""
 
 import csv
 import json
@@ -99,7 +99,7 @@ def test_runs_are_timed_repeated_and_made_once_each():
     assert all(run.measures_time for run in runs)
     on_cpu = [run for run in runs if run.backend == "cpu"]
     assert len(on_cpu) == plan["repeats"] * (len(plan["variants"]) + 1)
-    # What a variant is compared with is measured on the same backend.
+    # A variant is compared with a base measured on the same backend.
     pairs = {one["name"]: one["without"] for one in plan["variants"]}
     on_vulkan = {Path(run.scene).stem for run in runs if run.backend == "vulkan"}
     assert {pairs[name] for name in plan["on_vulkan"]} <= on_vulkan

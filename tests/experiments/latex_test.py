@@ -1,4 +1,4 @@
-"""Tables as LaTeX: what is special there, numbers, rules."""
+"""Tables as LaTeX: special characters, numbers, rules."""
 
 from lab.latex import escaped, latex_table
 from lab.sections import Column, Section, Table

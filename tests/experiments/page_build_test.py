@@ -1,4 +1,4 @@
-"""The page of the experiments as files: what is rewritten, what is refused, how numbers are written."""
+"""The page of the experiments as files: what is rewritten, what is an error, and number formats."""
 
 import pytest
 from lab.page import PageError, build_page, significant

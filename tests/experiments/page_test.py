@@ -36,7 +36,7 @@ def browser():
 
 @pytest.fixture(scope="session")
 def complaints():
-    """What browsers said of the page, and what they asked of a network: nothing, ever."""
+    """Messages of the browser about the page, and its network requests: there must be none."""
     return []
 
 
@@ -71,7 +71,7 @@ def laptop(open_page):
 
 @pytest.fixture
 def viewer(laptop, images):
-    """A viewer as it was when the page was opened."""
+    """A viewer in its initial state."""
     reader = Reader(laptop, "effects-images-whole", images)
     reader.hover(5, 5)
     reader.press("f").press("Digit1").click("Image")
@@ -83,7 +83,7 @@ def viewer(laptop, images):
 
 
 def half(images, name, x=30, y=12):
-    """A pixel as the page has it: rounded to halfs."""
+    """A pixel as the page has it: rounded to half floats."""
     return images[name][y, x].astype(np.float16).astype(float)
 
 
@@ -364,7 +364,7 @@ def test_the_page_begins_with_its_answer_and_tabs_end_within_their_box(open_page
     assert max(tabs.evaluate(edges)) <= 0
     assert tabs.evaluate("list => list.scrollWidth <= list.clientWidth")
     assert tabs.bounding_box()["height"] <= 0.31 * page.viewport_size["height"]
-    # One that is chosen by a key comes into sight.
+    # An image that is chosen by a key is scrolled into view.
     page.locator("#effects-images-many .stage").focus()
     for _ in range(13):
         page.keyboard.press("ArrowRight")

@@ -1,4 +1,4 @@
-"""The targets of parallel_ppm_2010 on made-up records: tables and verdicts are computed right. Nothing is rendered."""
+"""The targets of parallel_ppm_2010 on made-up records: tables and verdicts are correct. Nothing is rendered."""
 
 import json
 import re
@@ -28,7 +28,7 @@ def plan_of(name: str, declared: Path = EXPERIMENTS / "methods.toml", full: bool
 
 @pytest.fixture
 def store(tmp_path):
-    """A store without a program: what is asked of it must have been put there."""
+    """A store without a program: every record that is read must have been added before."""
     return Store(tmp_path, Machine(Path("lampyris"), "", "0", "hash", "a processor", SOFTWARE))
 
 
@@ -42,7 +42,7 @@ def put(store: Store, run, **content) -> str:
 
 
 def statistics(step_seconds: dict[str, float], passes: int = 2, device: str = "a processor") -> dict:
-    """Statistics of a render whose phases took so long."""
+    """Statistics of a render whose phases took this long."""
     return {"phases": step_seconds, "passes": passes, "wall_s": sum(step_seconds.values()), "device": device}
 
 
@@ -243,7 +243,7 @@ def test_memoryless_passes_share_one_formula():
 
 
 def stochastic_images(chance, seeds: int, in_disc: float, passes: int, slots_of: float | None) -> np.ndarray:
-    """Means of Poisson counts; with `slots_of`, of counts that one of so many buckets' photons stand for."""
+    """Means of Poisson counts; with `slots_of`, one photon survives per bucket, for itself and so many others on average."""
     counts = chance.poisson(in_disc, (seeds, passes, 12, 12))
     if slots_of is not None:
         # A photon shares its bucket with others, Poisson in number: the survivor stands for all of them.
@@ -318,7 +318,7 @@ def test_the_shortest_structure_is_the_easiest(counts, holds):
 
 
 class Outcome:
-    """What verdicts on equal time read of an outcome."""
+    """The values of an outcome that verdicts on equal time use."""
 
     def __init__(self, scene: str, method: str, **errors) -> None:
         plan = plan_of("robustness")

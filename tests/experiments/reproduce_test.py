@@ -1,4 +1,4 @@
-"""A small reproduction: nothing is made twice, a kill costs one run, damage is mended, and a line adds a method."""
+"""A small reproduction: no run is repeated, a kill costs one run, damage is repaired, and one line adds a method."""
 
 import fcntl
 import json
@@ -31,7 +31,7 @@ stochastic_hash = { use = "stochastic_hash" }
 
 @pytest.fixture(scope="module")
 def reproduction(source_dir, program, tmp_path_factory):
-    """Where the tests of this file leave their reproduction, and how it is called."""
+    """The folder of this file's reproduction, and the command that makes it."""
     folder = tmp_path_factory.mktemp("reproduce")
     methods = folder / "methods.toml"
     methods.write_text(METHODS.replace("LINE\n", ""))
@@ -67,7 +67,7 @@ def test_a_killed_reproduction_loses_one_run_at_most(reproduction):
     assert done.returncode == 0, done.stdout + done.stderr
     after = made_at(folder)
     assert len(after) == 4
-    assert {key: after[key] for key in before} == before  # what was done is still what it was
+    assert {key: after[key] for key in before} == before  # finished runs are unchanged
     assert "4 runs, " in done.stdout
     assert (folder / "index.html").exists()
 

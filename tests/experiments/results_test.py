@@ -1,4 +1,4 @@
-"""docs/results.md: each number can be followed to the run that it came from; some are."""
+"""docs/results.md: each number can be traced to its run; this test traces some."""
 
 import gzip
 import json

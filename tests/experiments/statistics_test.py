@@ -36,7 +36,7 @@ def test_no_slope_without_two_places_or_of_what_is_not_positive(x, y):
 
 
 def test_confidence_intervals_cover_as_often_as_they_say():
-    """Of 2000 intervals of 90 %, 1800 cover: the standard deviation of that number is 13.4."""
+    """1800 of 2000 intervals of 90 % cover the value: the standard deviation of that number is 13.4."""
     random = np.random.default_rng(1)
     samples = random.normal(3.0, 2.0, (2000, 5))
     covered = sum(mean_interval(row, 0.9).holds(3.0) for row in samples)
@@ -70,7 +70,7 @@ def test_binomial_interval_of_known_tables():
 
 
 def test_misses_that_chance_allows():
-    """Of 6 intervals at 95 %, 2 or more miss in 3.3 % of cases, 1 or more in 26 %."""
+    """2 or more of 6 intervals at 95 % miss in 3.3 % of cases, 1 or more in 26 %."""
     assert misses_by_chance(6) == 1
     assert misses_by_chance(1) == 0
     assert misses_by_chance(0) == 0

@@ -1,4 +1,4 @@
-"""Keys are made of all inputs, results are whole or not there, and a damaged one is found."""
+"""Keys depend on all inputs, results are complete or absent, and a damaged one is detected."""
 
 import json
 import shutil

@@ -23,7 +23,7 @@ def fuzz_build(source_dir):
 
 
 def fuzz(build, source_dir, corpus, target, seconds):
-    # A fresh folder first: what is found in this run goes there, not into the tree's corpus.
+    # A fresh folder comes first: new inputs go there, not into the tree's corpus.
     folder = source_dir / "tests/fuzz"
     dictionary = folder / ("ply.dict" if target == "ply" else "pbrt.dict")
     limits = [f"-max_total_time={seconds}", "-rss_limit_mb=1024", "-timeout=20", "-max_len=4096"]
@@ -45,7 +45,7 @@ def test_finds_nothing_in_minutes(fuzz_build, source_dir, tmp_path, target):
 
 
 def test_the_seeds_are_read(fuzz_build, source_dir):
-    """The corpus is read without a finding, and is not empty: or the fuzzer would start from nothing."""
+    """The corpus is read without a finding, and is not empty, or else the fuzzer would start from nothing."""
     for target in TARGETS:
         seeds = sorted((source_dir / "tests/fuzz/corpus" / target).iterdir())
         assert len(seeds) >= 5

@@ -11,7 +11,7 @@ from lab.sections import Axis, Column, Download, Image, Plot, Section, Series, T
 
 WIDTH, HEIGHT = 96, 64
 NAN_PIXEL = (70, 20)
-RED, GREEN = (0.5, 0.02, 0.02), (0.02, 0.5, 0.02)  # what path and ppm show, beside a little structure
+RED, GREEN = (0.5, 0.02, 0.02), (0.02, 0.5, 0.02)  # the images of path and ppm, apart from a little structure
 TEXT = "Errors fall with the time, as `1/N` says; <b>markup</b> stays text."
 MACHINE = {"processor": "A processor", "cores": "2", "Vulkan device": "llvmpipe", "version": "lampyris 0.0"}
 
@@ -133,7 +133,7 @@ def made_up_images() -> dict[str, np.ndarray]:
     """The pixels of the images, as they are in the EXRs."""
     path, ppm, reference = picture(RED, 1), picture(GREEN, 2), picture((0.25, 0.25, 0.25), 3)
     path[NAN_PIXEL[1], NAN_PIXEL[0], 1] = np.nan
-    reference[10, 10] = 1e9  # beyond what a half holds
+    reference[10, 10] = 1e9  # beyond the range of a half float
     return {"path": path, "ppm": ppm, "reference": reference}
 
 

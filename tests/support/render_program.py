@@ -1,4 +1,4 @@
-"""Runs `lampyris render` and reads what it writes."""
+"""Runs `lampyris render` and reads its output files."""
 
 import json
 import struct
