@@ -3,9 +3,9 @@
 #
 # lampyris_material(NAME RANK number [EFFECT name [COST text]] [RARELY] [SCATTERS_AS prefix] [ESTIMATES] [SCATTERS_NOTHING])
 #
-#   RANK              kernels ask for the lowest rank first: what most surfaces are made of comes early
-#   EFFECT            kernels of scenes that do not call for this effect (EFFECT_NAME) have no code for the material
-#   COST              declares the effect, and says in a few words what it costs
+#   RANK              kernels check the lowest rank first, so common materials have low ranks
+#   EFFECT            kernels of scenes without this effect (EFFECT_NAME) have no code for the material
+#   COST              declares the effect, and describes its cost in a few words
 #   RARELY            few scenes have it: the branch to its functions is compiled as unlikely
 #   SCATTERS_AS       the prefix of the functions that evaluate and sample it, which materials of neighbouring ranks may share
 #   ESTIMATES         these two give estimates, and are told which are wanted (`jobs`)
@@ -128,7 +128,7 @@ function(lampyris_generate_materials out)
     endforeach()
     string(APPEND visible_action
       "    if (${guard}b.kind == MATERIAL_${upper}) return ${name}_visible_action(b, roughness);\n")
-    # Those that share functions are one branch.
+    # Materials that share functions are one branch.
     get_property(model GLOBAL PROPERTY LAMPYRIS_SCATTERS_AS_${name})
     if(model IN_LIST models)
       string(APPEND is_${model} " || b.kind == MATERIAL_${upper}")

@@ -243,7 +243,7 @@ def test_memoryless_passes_share_one_formula():
 
 
 def stochastic_images(chance, seeds: int, in_disc: float, passes: int, slots_of: float | None) -> np.ndarray:
-    """Means of Poisson counts; with `slots_of`, one photon survives per bucket, for itself and so many others on average."""
+    """Means of Poisson counts; with `slots_of`, one photon a bucket survives, for itself and that many on average."""
     counts = chance.poisson(in_disc, (seeds, passes, 12, 12))
     if slots_of is not None:
         # A photon shares its bucket with others, Poisson in number: the survivor stands for all of them.
