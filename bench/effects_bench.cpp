@@ -53,7 +53,7 @@ int run(const std::string& file, int width, int height, uint32_t samples, bool e
 
     uint64_t hash = 0xcbf29ce484222325u, rays = 0;  // FNV-1a: equal images show that both builds did the same work
     for (const kernel::FilmPixel& pixel : film) {
-        rays += pixel.counts.y;
+        rays += pixel.rays;
         unsigned char bytes[sizeof pixel];
         std::memcpy(bytes, &pixel, sizeof pixel);
         for (const unsigned char byte : bytes) hash = (hash ^ byte) * 0x100000001b3u;

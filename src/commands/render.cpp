@@ -64,12 +64,12 @@ void print_replay(const RenderOutcome& outcome, const std::array<int, 3>& replay
                                          {"pass", replay[2]},
                                          {"backend", outcome.record.backend},
                                          {"radiance", {p.sum.x, p.sum.y, p.sum.z}},
-                                         {"weight", p.sum.w},
-                                         {"rays", p.counts.y},
-                                         {"non_finite", p.counts.z},
+                                         {"weight", p.weight},
+                                         {"rays", p.rays},
+                                         {"non_finite", p.left_out},
                                          {"normal", {p.normal.x, p.normal.y, p.normal.z}},
                                          {"albedo", {p.albedo.x, p.albedo.y, p.albedo.z}},
-                                         {"depth", p.squares.w}};
+                                         {"depth", p.depth}};
     print("{}\n", json.dump(2));
 }
 

@@ -30,8 +30,8 @@ Estimate estimate(double sum, double squares, double weight_sum, double n) {
 }
 
 std::array<Estimate, 3> estimates(const kernel::FilmPixel& p) {
-    const double n = double(p.counts.x - p.counts.z);
-    const double weight = double(p.sum.w) + double(p.low.w);
+    const double n = double(p.samples - p.left_out);
+    const double weight = double(p.weight) + double(p.weight_low);
     return {estimate(double(p.sum.x) + double(p.low.x), p.squares.x, weight, n),
             estimate(double(p.sum.y) + double(p.low.y), p.squares.y, weight, n),
             estimate(double(p.sum.z) + double(p.low.z), p.squares.z, weight, n)};
@@ -88,14 +88,14 @@ FilmSummary Film::summary() const {
     result.min_samples = std::numeric_limits<uint32_t>::max();
     for (size_t i = 0; i < pixels_.size(); ++i) {
         const kernel::FilmPixel& p = pixels_[i];
-        result.samples += p.counts.x;
-        result.rays += p.counts.y;
-        result.min_samples = std::min(result.min_samples, p.counts.x);
-        result.max_samples = std::max(result.max_samples, p.counts.x);
-        if (p.counts.z > 0 && result.non_finite == 0)
+        result.samples += p.samples;
+        result.rays += p.rays;
+        result.min_samples = std::min(result.min_samples, p.samples);
+        result.max_samples = std::max(result.max_samples, p.samples);
+        if (p.left_out > 0 && result.non_finite == 0)
             result.first_non_finite = {uint32_t(window_.x + i % window_.z), uint32_t(window_.y + i / window_.z),
-                                       p.counts.w};
-        result.non_finite += p.counts.z;
+                                       p.first_left_out};
+        result.non_finite += p.left_out;
     }
     const ErrorEstimate error = estimate_error(
         window_.z, window_.w, [&](uint32_t x, uint32_t y) { return pixel_estimate(size_t(y) * window_.z + x); });
@@ -111,7 +111,7 @@ PixelEstimate Film::pixel_estimate(size_t i) const {
     result.radiance = estimates(p);
     result.sees_surface = p.albedo.x > 0.0f || p.albedo.y > 0.0f || p.albedo.z > 0.0f;
     result.has_light = p.squares.x > 0.0f || p.squares.y > 0.0f || p.squares.z > 0.0f;
-    result.left_out = p.counts.x >= 2 && p.counts.x == p.counts.z;
+    result.left_out = p.samples >= 2 && p.samples == p.left_out;
     for (const Estimate& e : result.radiance) {
         result.left_out |= !std::isfinite(e.mean);
         result.unknown |= e.variance > kLargestFloat;
@@ -127,7 +127,7 @@ PixelEstimate Film::pixel_estimate(size_t i) const {
 
 std::array<ChannelEstimate, 3> Film::bias_estimates(size_t i) const {
     const kernel::FilmPixel& p = pixels_[i];
-    const double n = double(p.counts.x - p.counts.z), weight = double(p.sum.w) + double(p.low.w);
+    const double n = double(p.samples - p.left_out), weight = double(p.weight) + double(p.weight_low);
     std::array<Estimate, 3> result;
     for (int c = 0; c < 3; ++c)
         result[size_t(c)] = estimate(double(biases_[i].sum[c]), double(biases_[i].squares[c]), weight, n);
@@ -158,15 +158,15 @@ Image Film::image() const {
         const kernel::FilmPixel& p = pixels_[i];
         const std::array<Estimate, 3> e = estimates(p);
         for (int c = 0; c < 3; ++c) *out++ = float(e[size_t(c)].mean);
-        const float hits = p.albedo.w;
+        const float hits = p.hits;
         const float to_hits = hits > 0.0f ? 1.0f / hits : 0.0f;
         for (int c = 0; c < 3; ++c) *out++ = p.albedo[c] * to_hits;
         const glm::vec3 n(p.normal);
         const float length = glm::length(n);
         for (int c = 0; c < 3; ++c) *out++ = length > 0.0f ? n[c] / length : 0.0f;
-        *out++ = p.squares.w * to_hits;
+        *out++ = p.depth * to_hits;
         for (int c = 0; c < 3; ++c) *out++ = of_image(e[size_t(c)].variance);
-        *out++ = float(p.counts.x);
+        *out++ = float(p.samples);
         if (!bias_buffer_) continue;
         const std::array<Estimate, 3> bias = bias_estimates(i);
         for (size_t c = 0; c < 3; ++c) *out++ = of_image(bias[c].mean);

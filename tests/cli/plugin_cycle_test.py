@@ -28,7 +28,7 @@ KERNEL(flat) {
     float n = float(window[0].samples);
     float v = params[0].value;
     film[index].sum += vec4(n * v, n * v, n * v, n);
-    film[index].counts.x += window[0].samples;
+    film[index].samples += window[0].samples;
 }
 """,
     "flat.cpp": """#include "core/integrator.h"

@@ -24,9 +24,9 @@ FN bool meet_light(uint light, vec3 o, vec3 d, INOUT(Surface) s) {
     s.geometry = record.geometry;
     s.primitive = record.primitive;
     if (record.kind == LIGHT_TRIANGLE) {
-        vec3 p0 = vec3(record.v0);
-        vec3 e1 = vec3(record.v1) - p0;
-        vec3 e2 = vec3(record.v2) - p0;
+        vec3 p0 = record.p0;
+        vec3 e1 = record.p1 - p0;
+        vec3 e2 = record.p2 - p0;
         vec3 p = cross3(d, e2);
         float determinant = dot3(e1, p);
         if (determinant == 0.0f) return false;

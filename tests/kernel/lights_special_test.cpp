@@ -1,4 +1,5 @@
 // Lights at a point, distant lights, pictures of light, emission textures and masks, and the choice between lights.
+#include "core/scene/lights/common.h"
 #include "support/light_probe.h"
 #include "support/statistics.h"
 
@@ -38,7 +39,7 @@ TEST(Lights, PointsShineByTheInverseSquare) {
         const auto device = create_device(backend);
         TestScene scene;
         auto light = record(kernel::LIGHT_POINT);
-        light.v0 = vec4(1, 2, 3, 0);
+        light.p0 = vec3(1, 2, 3);
         scene.add_light(light, vec3(5));
         const auto s = only_sample(*device, scene, vec3(1, -1, 7));
         EXPECT_NEAR(s.radiance, 5.0 / 25, 1e-6);
@@ -58,8 +59,7 @@ TEST(Lights, SpotsFallOffSmoothly) {
             SCOPED_TRACE(degrees);
             TestScene scene;
             auto light = record(kernel::LIGHT_SPOT);
-            light.v1 = vec4(0, 0, -1, inner);
-            light.v2.w = float(outer);
+            set_spot(light, vec3(0, 0, -1), float(inner), float(outer));
             scene.add_light(light, vec3(3));
             const double a = degrees * kPi / 180;
             const auto s = only_sample(*device, scene, 2.0f * vec3(std::sin(a), 0, -std::cos(a)));
@@ -76,7 +76,7 @@ TEST(Lights, DistantLightsComeFromTheirDirection) {
         const auto device = create_device(backend);
         TestScene scene;
         auto light = record(kernel::LIGHT_DISTANT);
-        light.v0 = vec4(0.6f, 0, 0.8f, 0);
+        light.p0 = vec3(0.6f, 0, 0.8f);
         scene.add_light(light, vec3(7));
         const auto s = only_sample(*device, scene, vec3(100, -50, 3));
         EXPECT_EQ(s.radiance, 7);
@@ -106,8 +106,8 @@ TEST(Lights, ProjectionsShowThePictureUpright) {
             const uint32_t image = scene.add_image({1, 2, 3, 4}, 2, 2, kernel::WRAP_BLACK);
             scene.scene.transforms.push_back(transform_of(to_world));
             auto light = record(kernel::LIGHT_PROJECTION, image, 1);
-            light.v0 = vec4(1, 2, 3, 0);
-            light.v2 = vec4(-0.5f, -0.25f, 0.5f, 0.25f);
+            light.p0 = vec3(1, 2, 3);
+            set_projection_window(light, vec4(-0.5f, -0.25f, 0.5f, 0.25f));
             scene.add_light(light, vec3(10));
             const dvec3 p = to_world * glm::dvec4(dvec3(place.direction), 1.0);
             const auto s = only_sample(*device, scene, vec3(p));
@@ -156,7 +156,7 @@ TEST(Lights, ManyLightsAddUp) {
         scene.add_area_light(scene.add_quadric(kernel::GEOMETRY_DISK, {2, 1, 0, float(2 * kPi)}), vec3(3),
                              kernel::LIGHT_TWO_SIDED);
         auto point = record(kernel::LIGHT_POINT);
-        point.v0 = vec4(0, 0, 2, 0);
+        point.p0 = vec3(0, 0, 2);
         scene.add_light(point, vec3(1), 0.1f);
         auto dark = record(kernel::LIGHT_POINT);
         scene.add_light(dark, vec3(1), 0.0f);  // no power: never chosen

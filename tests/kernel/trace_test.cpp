@@ -5,6 +5,7 @@
 #include "core/device.h"
 #include "core/error.h"
 #include "core/scene/scene.h"
+#include "support/quadrics.h"
 
 #include <gtest/gtest.h>
 
@@ -68,7 +69,7 @@ struct TraceScene {
     }
     void add_quadric(uint32_t kind, vec4 params, const kernel::TransformRecord& transform) {
         const uint32_t geometry = add(kind, 1);
-        scene.geometries[geometry].params = params;
+        scene.geometries[geometry].quadric = test::quadric_record(kind, params);
         scene.geometries[geometry].transform = uint32_t(scene.transforms.size());
         scene.transforms.push_back(transform);
         scene.effects.ask(kernel::EFFECT_QUADRICS, "test");

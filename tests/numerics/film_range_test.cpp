@@ -42,9 +42,9 @@ TEST_P(FilmRange, SumsThatOverflowLeaveSamplesOut) {
         for (int x = 0; x < 8; ++x) {
             EXPECT_NEAR(image.value(x, 0, 0) / expected, 1.0f, 1e-6f);
             const kernel::FilmPixel& pixel = image.pixels[size_t(x)];
-            EXPECT_EQ(pixel.counts.x, kPasses);
-            EXPECT_EQ(pixel.counts.z, kPasses - kept);
-            EXPECT_EQ(pixel.counts.w, kept);  // the first sample that is left out
+            EXPECT_EQ(pixel.samples, kPasses);
+            EXPECT_EQ(pixel.left_out, kPasses - kept);
+            EXPECT_EQ(pixel.first_left_out, kept);  // the first sample that is left out
         }
         EXPECT_GE(image.summary.non_finite, 4u * 8u * (kPasses - kept));
         EXPECT_GT(image.summary.unknown_errors, 0u);

@@ -69,9 +69,9 @@ double distance_to_surface(const Scene& scene, uint32_t geometry, dvec3 p) {
     const kernel::GeometryRecord& g = scene.geometries[geometry];
     const kernel::TransformRecord& m = scene.transforms[g.transform];
     const Long3 q = transform(m.from0, m.from1, m.from2, Long3(p), 1);
-    if (g.kind == kernel::GEOMETRY_SPHERE) return double(glm::length(q) - g.params.x);
-    if (g.kind == kernel::GEOMETRY_DISK) return double(q.z - g.params.x);
-    return double(std::sqrt(q.x * q.x + q.y * q.y) - g.params.x);
+    if (g.kind == kernel::GEOMETRY_SPHERE) return double(glm::length(q) - g.quadric.radius);
+    if (g.kind == kernel::GEOMETRY_DISK) return double(q.z - g.quadric.height);
+    return double(std::sqrt(q.x * q.x + q.y * q.y) - g.quadric.radius);
 }
 
 TEST(ShapesPrecision, HitsAreWithinAFewRoundingErrors) {
@@ -87,7 +87,7 @@ TEST(ShapesPrecision, HitsAreWithinAFewRoundingErrors) {
                 const ShapeRay& ray = setup.rays[i];
                 const kernel::GeometryRecord& g = scene.geometries[ray.geometry];
                 const kernel::TransformRecord& m = scene.transforms[g.transform];
-                const long double r = kind == kernel::GEOMETRY_DISK ? g.params.y : g.params.x;
+                const long double r = g.quadric.radius;
                 const Long3 o = transform(m.from0, m.from1, m.from2, Long3(ray.origin), 1) / r;
                 const Long3 d = transform(m.from0, m.from1, m.from2, Long3(ray.direction), 0) / r;
                 // The size of the terms whose sum is o.

@@ -82,10 +82,10 @@ TEST_P(DeterminismTest, ReplayShowsThePixelsSamples) {
         const Rendered one = render(s);
         ASSERT_EQ(one.pixels.size(), 1u);
         for (int c = 0; c < 3; ++c) sum[c] += one.pixels[0].sum[c];
-        rays += one.pixels[0].counts.y;
+        rays += one.pixels[0].rays;
     }
     const kernel::FilmPixel& pixel = whole.pixels[17 * 37 + 12];
-    EXPECT_EQ(rays, pixel.counts.y);
+    EXPECT_EQ(rays, pixel.rays);
     for (int c = 0; c < 3; ++c) {
         EXPECT_GT(pixel.sum[c], 0.0f);
         EXPECT_NEAR(sum[c], double(pixel.sum[c]) + double(pixel.low[c]), 1e-6 * sum[c]) << c;

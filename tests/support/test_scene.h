@@ -4,6 +4,7 @@
 #include "core/scene/area_lights.h"
 #include "core/scene/light_distribution.h"
 #include "core/scene/scene.h"
+#include "support/quadrics.h"
 
 #include <glm/glm.hpp>
 #include <glm/gtc/matrix_transform.hpp>
@@ -55,7 +56,7 @@ class TestScene {
     }
     uint32_t add_quadric(uint32_t kind, glm::vec4 params, const glm::dmat4& to = glm::dmat4(1.0), uint32_t flags = 0) {
         const uint32_t index = add_geometry(kind, flags, 1);
-        scene.geometries[index].params = params;
+        scene.geometries[index].quadric = quadric_record(kind, params);
         scene.geometries[index].transform = uint32_t(scene.transforms.size());
         scene.transforms.push_back(transform_of(to));
         return index;

@@ -50,7 +50,7 @@ AttributeEnd
     EXPECT_EQ(scene.lights[0].kind, LIGHT_TRIANGLE);
     EXPECT_EQ(scene.lights[0].emission, Spectrum(17.0f, 12.0f, 4.0f));
     EXPECT_EQ(scene.lights[0].choice_probability, 1.0f);
-    EXPECT_FLOAT_EQ(scene.lights[0].v0.w, 2.0f);
+    EXPECT_FLOAT_EQ(scene.lights[0].area, 2.0f);
     EXPECT_EQ(scene.positions.size(), 7u * 3u + 4u);
     ASSERT_EQ(scene.materials.size(), 1u);
     EXPECT_EQ(scene.materials[0].color0, Spectrum(0.63f, 0.065f, 0.05f));
@@ -169,7 +169,7 @@ AttributeEnd
     EXPECT_NEAR(luminance(lights[2].emission), 2.0f, 1e-4f);  // 4 pi lumens from an rgb of 2: as pbrt-v4, twice that
     EXPECT_NEAR(luminance(lights[3].emission), 1.0f / std::numbers::pi_v<float>, 1e-5f);  // 2 pi (1 - cos 60) = pi
     EXPECT_NEAR(luminance(lights[4].emission), 7.0f, 1e-4f);
-    EXPECT_EQ(lights[4].v0, vec4(0.0f, 0.0f, 1.0f, 0.0f));
+    EXPECT_EQ(lights[4].p0, glm::vec3(0.0f, 0.0f, 1.0f));
 }
 
 TEST(BuildScene, MaterialsAndTheirEffects) {

@@ -36,7 +36,7 @@ TEST(Recentre, AScenesPlaceIsNotRounded) {
     for (size_t i = 0; i < here.scene().transforms.size(); ++i)
         EXPECT_EQ(here.scene().transforms[i].to1, there.scene().transforms[i].to1);
     EXPECT_EQ(here.scene().instances[1].transform.to0, there.scene().instances[1].transform.to0);
-    EXPECT_EQ(here.scene().lights[0].v0, there.scene().lights[0].v0);
+    EXPECT_EQ(here.scene().lights[0].p0, there.scene().lights[0].p0);
     for (size_t i = 0; i < here.scene().texture_ops.size(); ++i)
         EXPECT_EQ(here.scene().texture_ops[i].m0, there.scene().texture_ops[i].m0);
     // The camera's transform is an inverse, which doubles round at 1e6.

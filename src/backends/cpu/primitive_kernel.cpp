@@ -50,13 +50,13 @@ PrimitiveBounds primitive_bounds(const Scene& scene, uint32_t geometry, uint32_t
     } else {
         // The full quadric's box. Sweeps cut by phimax use it, too: this costs a few rays, but is correct.
         glm::vec3 low, high;
-        const glm::vec4& q = record.params;
+        const kernel::Quadric& q = record.quadric;
         if (record.kind == kernel::GEOMETRY_DISK) {
-            low = {-q.y, -q.y, q.x};
-            high = {q.y, q.y, q.x};
+            low = {-q.radius, -q.radius, q.height};
+            high = {q.radius, q.radius, q.height};
         } else {
-            low = {-q.x, -q.x, q.y};
-            high = {q.x, q.x, q.z};
+            low = {-q.radius, -q.radius, q.z_min};
+            high = {q.radius, q.radius, q.z_max};
         }
         const kernel::TransformRecord& m = scene.transforms[record.transform];
         for (int corner = 0; corner < 8; ++corner) {

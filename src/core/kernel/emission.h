@@ -49,22 +49,23 @@ FN bool emit_from_point(uint index, vec2 u_place, vec2 u_direction, INOUT(Emissi
     LightRecord light = lights[index];
     float pdf = pdf_uniform_sphere();
     if (light.kind == LIGHT_SPOT) {
-        float one_minus_cos = 1.0f - light.v2.w;
-        e.direction = to_world(frame_from_z(vec3(light.v1)), sample_uniform_cone(u_direction, one_minus_cos));
+        float one_minus_cos = 1.0f - spot_cos_end(light);
+        e.direction = to_world(frame_from_z(spot_axis(light)), sample_uniform_cone(u_direction, one_minus_cos));
         pdf = pdf_uniform_cone(one_minus_cos);
     } else if (HAS(EFFECT_PROJECTION_LIGHTS) && light.kind == LIGHT_PROJECTION) {
         // Uniform over the picture at z = 1, which cos^3 turns into solid angle.
         TransformRecord m = transforms[light.transform];
-        vec2 p = vec2(lerp_of(u_direction.x, light.v2.x, light.v2.z), lerp_of(u_direction.y, light.v2.y, light.v2.w));
+        vec4 window = projection_window(light);
+        vec2 p = vec2(lerp_of(u_direction.x, window.x, window.z), lerp_of(u_direction.y, window.y, window.w));
         float d2 = p.x * p.x + p.y * p.y + 1.0f;
         e.direction = unit(transform_vector(m.to0, m.to1, m.to2, vec3(p.x, p.y, 1.0f)));
-        pdf = d2 * sqrt(d2) / ((light.v2.z - light.v2.x) * (light.v2.w - light.v2.y)) *
-              solid_angle_stretch(m, e.direction);
+        pdf = d2 * sqrt(d2) / ((window.z - window.x) * (window.w - window.y)) * solid_angle_stretch(m, e.direction);
     } else {
         e.direction = sample_uniform_sphere(u_direction);
     }
     e.direction = unit(e.direction);
-    e.origin = vec3(light.v0) + point_offset(vec3(light.v0), e.direction) * e.direction;
+    vec3 position = light_position(light);
+    e.origin = position + point_offset(position, e.direction) * e.direction;
     e.power = point_light_intensity(light, e.direction) / (pdf * light.choice_probability);
     e.medium = light_medium(index, e.direction, e.direction);
     return true;
@@ -97,8 +98,8 @@ FN bool emit_photon(uint u_choice, float u_side, vec2 u_place, uvec2 u_direction
         }
     } else if (HAS(EFFECT_DISTANT_LIGHTS) && kind == LIGHT_DISTANT) {
         LightRecord light = lights[e.light];
-        e.direction = -vec3(light.v0);
-        e.origin = distant_origin(vec3(light.v0), u_place);
+        e.direction = -light_direction(light);
+        e.origin = distant_origin(light_direction(light), u_place);
         e.power = light.emission * (distant_area() / light.choice_probability);
         found = true;
     } else if (HAS(EFFECT_POINT_LIGHTS) || HAS(EFFECT_PROJECTION_LIGHTS)) {

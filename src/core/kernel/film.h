@@ -23,17 +23,17 @@ FN float compensated_add(float sum, float value, INOUT(float) low) {
 // Adds one sample, in linear Rec. 709. Radiance that is not finite, or that the sums cannot hold with what they have, is counted and located, not
 // averaged in: then the result is false. Squares overflow sooner (above 1.8e19), and stay infinite: the variance is not known.
 FN bool film_add(INOUT(FilmPixel) p, vec3 rgb, float weight, uint pass) {
-    p.counts.x += 1u;
+    p.samples += 1u;
     vec3 value = rgb * weight;
-    if (!is_finite3(vec3(p.sum) + value)) {
-        if (p.counts.z == 0u) p.counts.w = pass;
-        p.counts.z += 1u;
+    if (!is_finite3(p.sum + value)) {
+        if (p.left_out == 0u) p.first_left_out = pass;
+        p.left_out += 1u;
         return false;
     }
     p.sum.x = compensated_add(p.sum.x, value.x, p.low.x);
     p.sum.y = compensated_add(p.sum.y, value.y, p.low.y);
     p.sum.z = compensated_add(p.sum.z, value.z, p.low.z);
-    p.sum.w = compensated_add(p.sum.w, weight, p.low.w);
+    p.weight = compensated_add(p.weight, weight, p.weight_low);
     p.squares.x += value.x * value.x;
     p.squares.y += value.y * value.y;
     p.squares.z += value.z * value.z;
@@ -74,9 +74,10 @@ FN FirstHit first_hit(IN(Surface) s, Spectrum albedo, float distance) {
 }
 
 FN void film_add_first_hit(INOUT(FilmPixel) p, IN(FirstHit) f) {
-    p.albedo += vec4(f.albedo.x, f.albedo.y, f.albedo.z, f.met);
-    p.normal += vec4(f.normal.x, f.normal.y, f.normal.z, 0.0f);
-    p.squares.w += f.distance;
+    p.albedo += f.albedo;
+    p.hits += f.met;
+    p.normal += f.normal;
+    p.depth += f.distance;
 }
 
 // What the film makes of radiance before it is added: the sensor's imaging ratio and the clamp of `maxcomponentvalue`.

@@ -1,6 +1,6 @@
 // The scene's records as kernels read them: shared by the host, the C++ kernels and GLSL.
 //
-// Members come in fours: vec4, uvec4, four scalars, or a Spectrum and a scalar. Whatever pads does so differently in GLSL and C++, and a
+// Members come in fours: vec4, uvec4, four scalars, or a vec3 or Spectrum and a scalar. Whatever pads does so differently in GLSL and C++, and a
 // shifted read gives NaN.
 // Indices that may be absent hold NONE. Directions and positions are world space unless said; colours are linear Rec.709.
 #ifndef LAMPYRIS_KERNEL_LAYOUT
@@ -14,9 +14,9 @@ CONST uint NONE = 0xffffffffu;
 
 CONST uint GEOMETRY_TRIANGLES = 0u;
 CONST uint GEOMETRY_BILINEAR = 1u;  // patches p00, p10, p01, p11
-CONST uint GEOMETRY_SPHERE = 2u;    // params: radius, zmin, zmax, phimax (radians)
-CONST uint GEOMETRY_DISK = 3u;      // params: height, radius, inner radius, phimax
-CONST uint GEOMETRY_CYLINDER = 4u;  // params: radius, zmin, zmax, phimax
+CONST uint GEOMETRY_SPHERE = 2u;
+CONST uint GEOMETRY_DISK = 3u;
+CONST uint GEOMETRY_CYLINDER = 4u;
 
 CONST uint GEOMETRY_HAS_NORMALS = 1u;
 CONST uint GEOMETRY_HAS_UVS = 2u;
@@ -24,6 +24,16 @@ CONST uint GEOMETRY_FLIP =
     4u;  // ReverseOrientation xor a handedness-swapping transform: the geometric normal turns round
 CONST uint GEOMETRY_REVERSED =
     8u;  // ReverseOrientation alone: vertex normals are negated on loading, this tells quadrics
+
+// A quadric in its own space, about the z axis.
+struct Quadric {
+    float radius;
+    float z_min;  // sphere, cylinder
+    float z_max;
+    float phi_max;       // radians
+    float height;        // disk
+    float inner_radius;  // disk
+};
 
 // One record per shape. Triangles and patches are in world space (in object-definition space inside an instanced object);
 // quadrics are in their own space, with a transform.
@@ -39,12 +49,10 @@ struct GeometryRecord {
     uint first_normal;   // of `normals` and `uvs`, in vertices
     uint first_uv;
     uint primitive_count;
-    uint media;   // interior << 16 | exterior: a transition between media where they differ
-    vec4 params;  // see the kinds
+    uint media;  // interior << 16 | exterior: a transition between media where they differ
+    Quadric quadric;
     float alpha;  // below 1 only where EFFECT_ALPHA
-    float unused0;
-    float unused1;
-    float unused2;
+    float unused;
 };
 
 // Rows of an affine transform and of its inverse.
@@ -237,13 +245,15 @@ struct LightRecord {
     uint distribution;  // infinite images: offset in `distributions`
     Spectrum emission;  // radiance, intensity or irradiance, or the scale of the texture or image
     float choice_probability;
-    vec4 v0;  // triangle: p0, w: area. point, spot, ...: position. distant: unit direction towards the light, w: unused
-    vec4
-        v1;  // triangle: p1 (order of the indices), w: distance of the farthest corner from the centroid. spot: unit axis (away from the light), w: cosine at which the falloff begins
-    vec4
-        v2;  // triangle: p2, w: 1 / area. spot: w: cosine at which it ends. projection: the picture's xmin, ymin, xmax, ymax at z = 1 in light space
-    vec4
-        normal;  // triangle: unit normal, turned as the geometry's flags say; w: 1 where vertex normals turn it (point by point)
+    // Triangle lights. Other kinds keep their numbers in these, too: light_record.h names them.
+    vec3 p0;  // corners, in the order of the indices
+    float area;
+    vec3 p1;
+    float extent;  // distance of the farthest corner from the centroid
+    vec3 p2;
+    float inverse_area;
+    vec3 normal;           // unit, turned as the geometry's flags say
+    float smooth_normals;  // 1 where vertex normals turn it (point by point)
 };
 
 // ---- Camera, film, scene ---------------------------------------------------------------------------------------------
@@ -305,13 +315,20 @@ struct SceneRecord {
 // Sums are compensated (Neumaier 1974), sample by sample, so that they do not depend on how passes are cut into dispatches,
 // and a million samples lose nothing.
 struct FilmPixel {
-    vec4 sum;      // filter-weighted radiance, sum of the weights
-    vec4 low;      // what rounding dropped from `sum`
-    vec4 squares;  // sums of squares of the weighted radiance, for the variance; w: what the first hits' depth sums to
-    vec4 albedo;   // sum over samples; w: number of samples that hit something
-    vec4 normal;   // sum over samples
-    uvec4
-        counts;  // samples, rays, samples left out (not finite, or beyond what the sums hold), pass of the first of those
+    vec3 sum;  // filter-weighted radiance
+    float weight;
+    vec3 low;  // what rounding dropped from `sum` and `weight`
+    float weight_low;
+    vec3 squares;  // of the weighted radiance, for the variance
+    float depth;   // sum over samples, of the first hit's distance
+    vec3 albedo;   // sum over samples
+    float hits;    // number of samples that hit something
+    vec3 normal;   // sum over samples
+    float unused;
+    uint samples;
+    uint rays;
+    uint left_out;        // samples that are not finite, or beyond what the sums hold
+    uint first_left_out;  // pass of the first of those
 };
 
 // What an integrator knows of its bias: sums over samples, as FilmPixel's.

@@ -4,6 +4,7 @@
 #ifndef LAMPYRIS_KERNEL_LIGHT
 #define LAMPYRIS_KERNEL_LIGHT
 
+#include "core/kernel/light_record.h"
 #include "core/kernel/shape_sampling.h"
 #include "core/kernel/environment.h"
 
@@ -127,15 +128,16 @@ FN float smooth_step_of(float x, float low, float high) {
 // same names do (4th edition, sections 12.2.1 and 12.2.3).
 FN Spectrum point_light_intensity(IN(LightRecord) light, vec3 w) {
     Spectrum intensity = light.emission;
-    if (light.kind == LIGHT_SPOT) return intensity * smooth_step_of(dot3(vec3(light.v1), w), light.v2.w, light.v1.w);
+    if (light.kind == LIGHT_SPOT)
+        return intensity * smooth_step_of(dot3(spot_axis(light), w), spot_cos_end(light), spot_cos_begin(light));
     if (HAS(EFFECT_PROJECTION_LIGHTS) && light.kind >= LIGHT_PROJECTION) {
         TransformRecord m = transforms[light.transform];
         vec3 d = unit(transform_vector(m.from0, m.from1, m.from2, w));
         vec2 st;
         if (light.kind == LIGHT_PROJECTION) {
             if (!(d.z >= 1e-3f)) return Spectrum(0.0f);
-            st = vec2((d.x / d.z - light.v2.x) / (light.v2.z - light.v2.x),
-                      (light.v2.w - d.y / d.z) / (light.v2.w - light.v2.y));
+            vec4 window = projection_window(light);
+            st = vec2((d.x / d.z - window.x) / (window.z - window.x), (window.w - d.y / d.z) / (window.w - window.y));
             if (!(st.x >= 0.0f && st.x <= 1.0f && st.y >= 0.0f && st.y <= 1.0f)) return Spectrum(0.0f);
         } else {
             st = square_from_direction(vec3(d.x, d.z, d.y));  // the image's pole is the light's y axis
@@ -147,12 +149,13 @@ FN Spectrum point_light_intensity(IN(LightRecord) light, vec3 w) {
 
 FN bool sample_point_light(uint index, vec3 ref_p, INOUT(LightSample) s) {
     LightRecord light = lights[index];
-    vec3 to_light = vec3(light.v0) - ref_p;
+    vec3 position = light_position(light);
+    vec3 to_light = position - ref_p;
     float d2 = length_squared(to_light);
     if (!(d2 > 0.0f) || !is_finite(d2)) return false;
     s.distance = sqrt(d2);
     s.wi = to_light / s.distance;
-    s.end = shadow_end(vec3(light.v0), point_offset(vec3(light.v0), s.wi), s.wi, s.wi, s.distance);
+    s.end = shadow_end(position, point_offset(position, s.wi), s.wi, s.wi, s.distance);
     s.radiance = point_light_intensity(light, -s.wi) / d2;
     s.pdf = light.choice_probability;
     s.is_delta = 1u;
@@ -196,7 +199,7 @@ FN bool light_sample(vec3 ref_p, uint u_choice, uvec2 u_place, OUT(LightSample) 
         return environment_sample(s.light, u, s.wi, s.radiance, s.pdf) && !is_black(s.radiance);
     }
     if (HAS(EFFECT_DISTANT_LIGHTS) && kind == LIGHT_DISTANT) {
-        s.wi = vec3(lights[s.light].v0);
+        s.wi = light_direction(lights[s.light]);
         s.radiance = lights[s.light].emission;
         s.pdf = lights[s.light].choice_probability;
         s.is_delta = 1u;

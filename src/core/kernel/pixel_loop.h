@@ -17,6 +17,6 @@ KERNEL(pixel_loop) {
         film_add(pixel, film_sensor(radiance), camera.weight, camera.pass);
     }
     if (i != w.samples) REPORT_UNFINISHED();
-    pixel.counts.y += traced_rays[0];
+    pixel.rays += traced_rays[0];
     film[at] = pixel;
 }

@@ -22,18 +22,18 @@ FN float quadric_phi(vec3 p) {
 }
 
 // Whether p (in the quadric's space) is on the part that exists.
-FN bool quadric_has_point(uint kind, vec4 params, vec3 p) {
+FN bool quadric_has_point(uint kind, IN(Quadric) q, vec3 p) {
     if (kind == GEOMETRY_SPHERE) {
-        if ((params.y > -params.x && p.z < params.y) || (params.z < params.x && p.z > params.z)) return false;
+        if ((q.z_min > -q.radius && p.z < q.z_min) || (q.z_max < q.radius && p.z > q.z_max)) return false;
     } else if (kind == GEOMETRY_CYLINDER) {
-        if (p.z < params.y || p.z > params.z) return false;
+        if (p.z < q.z_min || p.z > q.z_max) return false;
     } else {
-        float x = p.x / params.y;
-        float y = p.y / params.y;
+        float x = p.x / q.radius;
+        float y = p.y / q.radius;
         float r2 = x * x + y * y;
-        if (r2 > 1.0f || r2 < sqr(params.z / params.y)) return false;
+        if (r2 > 1.0f || r2 < sqr(q.inner_radius / q.radius)) return false;
     }
-    return !(params.w < TWO_PI) || quadric_phi(p) <= params.w;
+    return !(q.phi_max < TWO_PI) || quadric_phi(p) <= q.phi_max;
 }
 
 // The first hit with 0 < t < t_max, and its point in the quadric's space, moved onto the surface.
@@ -53,13 +53,13 @@ FN bool quadric_solve(uint geometry, vec3 set_origin, vec3 set_direction, float 
     vec3 o_error = quadric_bound() * transform_magnitude(m.from0, m.from1, m.from2, set_origin);
     if (kind == GEOMETRY_DISK) {
         if (d.z == 0.0f) return false;
-        float height = g.params.x - o.z;
+        float height = g.quadric.height - o.z;
         t = height / d.z;
         if (abs(height) <= o_error.z || !(t > 0.0f && t < t_max)) return false;
-        p = vec3(o.x + t * d.x, o.y + t * d.y, g.params.x);
-        return quadric_has_point(kind, g.params, p);
+        p = vec3(o.x + t * d.x, o.y + t * d.y, g.quadric.height);
+        return quadric_has_point(kind, g.quadric, p);
     }
-    float radius = g.params.x;
+    float radius = g.quadric.radius;
     float use_z = kind == GEOMETRY_SPHERE ? 1.0f : 0.0f;  // the cylinder's equation has no z
     vec3 direction = vec3(d.x, d.y, d.z * use_z);
     float speed = length_of(direction);
@@ -94,7 +94,7 @@ FN bool quadric_solve(uint geometry, vec3 set_origin, vec3 set_direction, float 
         unit_point = unit_point / length_of(unit_point);
         p = unit_point * radius;
         if (kind == GEOMETRY_CYLINDER) p.z = o.z + t * d.z;
-        if (quadric_has_point(kind, g.params, p)) return true;
+        if (quadric_has_point(kind, g.quadric, p)) return true;
     }
     return false;
 }
@@ -105,9 +105,9 @@ FN bool quadric_hit(uint geometry, vec3 o, vec3 d, float t_max, OUT(float) t) {
 }
 
 // Outward unit normal in the quadric's space.
-FN vec3 quadric_outward(uint kind, vec4 params, vec3 p) {
-    if (kind == GEOMETRY_SPHERE) return p / params.x;
-    if (kind == GEOMETRY_CYLINDER) return vec3(p.x / params.x, p.y / params.x, 0.0f);
+FN vec3 quadric_outward(uint kind, IN(Quadric) q, vec3 p) {
+    if (kind == GEOMETRY_SPHERE) return p / q.radius;
+    if (kind == GEOMETRY_CYLINDER) return vec3(p.x / q.radius, p.y / q.radius, 0.0f);
     return vec3(0.0f, 0.0f, 1.0f);
 }
 
@@ -116,25 +116,25 @@ FN vec3 quadric_outward(uint kind, vec4 params, vec3 p) {
 FN vec3 quadric_set_normal(uint geometry, vec3 p) {
     GeometryRecord g = geometries[geometry];
     TransformRecord m = transforms[g.transform];
-    vec3 n = transform_normal(m.from0, m.from1, m.from2, quadric_outward(g.kind, g.params, p));
+    vec3 n = transform_normal(m.from0, m.from1, m.from2, quadric_outward(g.kind, g.quadric, p));
     return (g.flags & GEOMETRY_FLIP) != 0u ? -n : n;
 }
 
 // Polar angles of a sphere's zmin and zmax.
-FN vec2 sphere_theta_range(vec4 params) {
-    return vec2(acos_of(clamp(params.y / params.x, -1.0f, 1.0f)), acos_of(clamp(params.z / params.x, -1.0f, 1.0f)));
+FN vec2 sphere_theta_range(IN(Quadric) q) {
+    return vec2(acos_of(clamp(q.z_min / q.radius, -1.0f, 1.0f)), acos_of(clamp(q.z_max / q.radius, -1.0f, 1.0f)));
 }
 
-FN vec2 quadric_uv(uint kind, vec4 params, vec3 p) {
-    float u = min(quadric_phi(p) / params.w, 1.0f);
+FN vec2 quadric_uv(uint kind, IN(Quadric) q, vec3 p) {
+    float u = min(quadric_phi(p) / q.phi_max, 1.0f);
     if (kind == GEOMETRY_SPHERE) {
-        vec2 theta = sphere_theta_range(params);
-        return vec2(u, (acos_of(p.z / params.x) - theta.x) / (theta.y - theta.x));
+        vec2 theta = sphere_theta_range(q);
+        return vec2(u, (acos_of(p.z / q.radius) - theta.x) / (theta.y - theta.x));
     }
-    if (kind == GEOMETRY_CYLINDER) return vec2(u, (p.z - params.y) / (params.z - params.y));
-    float x = p.x / params.y;
-    float y = p.y / params.y;
-    return vec2(u, (1.0f - sqrt(x * x + y * y)) / (1.0f - params.z / params.y));
+    if (kind == GEOMETRY_CYLINDER) return vec2(u, (p.z - q.z_min) / (q.z_max - q.z_min));
+    float x = p.x / q.radius;
+    float y = p.y / q.radius;
+    return vec2(u, (1.0f - sqrt(x * x + y * y)) / (1.0f - q.inner_radius / q.radius));
 }
 
 // Position and rounding error of p (quadric's space, on the surface) in the set's space.
@@ -154,31 +154,31 @@ FN void quadric_fill_uv(uint geometry, vec3 p, float normal_length, INOUT(Surfac
     GeometryRecord g = geometries[geometry];
     TransformRecord m = transforms[g.transform];
     uint kind = g.kind;
-    float phi_max = g.params.w;
-    s.uv = quadric_uv(kind, g.params, p);
+    float phi_max = g.quadric.phi_max;
+    s.uv = quadric_uv(kind, g.quadric, p);
 
     float x = p.x;
     float y = p.y;
     float r = sqrt(x * x + y * y);
     if (r == 0.0f) {  // at a pole or a disk's centre phi is whatever we say, as long as dpdu and dpdv are not zero
-        x = 1e-5f * (kind == GEOMETRY_DISK ? g.params.y : g.params.x);
+        x = 1e-5f * g.quadric.radius;
         r = x;
     }
     vec3 dpdu = vec3(-phi_max * y, phi_max * x, 0.0f);
     vec3 dpdv;
     if (kind == GEOMETRY_SPHERE) {
-        vec2 theta = sphere_theta_range(g.params);
+        vec2 theta = sphere_theta_range(g.quadric);
         dpdv = (theta.y - theta.x) * vec3(p.z * x / r, p.z * y / r, -r);
     } else if (kind == GEOMETRY_CYLINDER) {
-        dpdv = vec3(0.0f, 0.0f, g.params.z - g.params.y);
+        dpdv = vec3(0.0f, 0.0f, g.quadric.z_max - g.quadric.z_min);
     } else {
-        dpdv = vec3(x, y, 0.0f) * ((g.params.z - g.params.y) / r);
+        dpdv = vec3(x, y, 0.0f) * ((g.quadric.inner_radius - g.quadric.radius) / r);
     }
     s.dpdu = transform_vector(m.to0, m.to1, m.to2, dpdu);
     s.dpdv = transform_vector(m.to0, m.to1, m.to2, dpdv);
     if (HAS(EFFECT_BUMP) && kind != GEOMETRY_DISK) {
         float sign = (g.flags & GEOMETRY_FLIP) != 0u ? -1.0f : 1.0f;
-        float curvature = sign / g.params.x;
+        float curvature = sign / g.quadric.radius;
         vec3 dndu = transform_normal(m.from0, m.from1, m.from2, dpdu * curvature);
         vec3 dndv =
             kind == GEOMETRY_SPHERE ? transform_normal(m.from0, m.from1, m.from2, dpdv * curvature) : vec3(0.0f);

@@ -68,16 +68,16 @@ FN float spherical_triangle_area(vec3 a, vec3 b, vec3 c) {
 // Solid angle in which to sample the triangle from p, or 0 where it is to be sampled by area.
 FN float triangle_sampled_solid_angle(IN(LightRecord) light, vec3 ref_p, OUT(vec3) a, OUT(vec3) b, OUT(vec3) c) {
     // From afar it is nearly the area, foreshortened, over the squared distance: area height / d^3.
-    vec3 centre = (vec3(light.v0) + vec3(light.v1) + vec3(light.v2)) * (1.0f / 3.0f) - ref_p;
+    vec3 centre = (light.p0 + light.p1 + light.p2) * (1.0f / 3.0f) - ref_p;
     float d2 = length_squared(centre);
-    if (d2 > 4.0f * light.v1.w * light.v1.w) {
-        float height = dot3(centre, vec3(light.normal));
-        float ratio = d2 * light.v2.w;  // so that no product leaves a float's range
+    if (d2 > 4.0f * light.extent * light.extent) {
+        float height = dot3(centre, light.normal);
+        float ratio = d2 * light.inverse_area;  // so that no product leaves a float's range
         if (height * height < SPHERICAL_TRIANGLE_MIN * SPHERICAL_TRIANGLE_MIN * d2 * (ratio * ratio)) return 0.0f;
     }
-    a = vec3(light.v0) - ref_p;
-    b = vec3(light.v1) - ref_p;
-    c = vec3(light.v2) - ref_p;
+    a = light.p0 - ref_p;
+    b = light.p1 - ref_p;
+    c = light.p2 - ref_p;
     float a2 = length_squared(a);
     float b2 = length_squared(b);
     float c2 = length_squared(c);
@@ -130,8 +130,8 @@ RARE_FN vec3 interpolated_light_normal(uint geometry, uint primitive, vec3 baryc
 
 // Unit normal of a triangle light, turned as the geometry's flags and vertex normals say.
 FN vec3 triangle_light_normal(IN(LightRecord) light, vec3 barycentric) {
-    vec3 ng = vec3(light.normal);
-    if (HAS(EFFECT_SMOOTH_NORMALS) && RARELY(light.normal.w != 0.0f))
+    vec3 ng = light.normal;
+    if (HAS(EFFECT_SMOOTH_NORMALS) && RARELY(light.smooth_normals != 0.0f))
         return face_forward(ng, interpolated_light_normal(light.geometry, light.primitive, barycentric));
     return ng;
 }
@@ -150,24 +150,24 @@ FN vec2 triangle_light_uv(IN(LightRecord) light, vec3 barycentric) {
 
 FN AreaSample sample_triangle_area(IN(LightRecord) light, vec2 u) {
     vec3 barycentric = sample_uniform_triangle(u);
-    vec3 p0 = vec3(light.v0);
-    vec3 p1 = vec3(light.v1);
-    vec3 p2 = vec3(light.v2);
-    float off_plane = triangle_plane_error(p1 - p0, p2 - p0, barycentric.y, barycentric.z, 0.5f * light.v2.w);
+    vec3 p0 = light.p0;
+    vec3 p1 = light.p1;
+    vec3 p2 = light.p2;
+    float off_plane = triangle_plane_error(p1 - p0, p2 - p0, barycentric.y, barycentric.z, 0.5f * light.inverse_area);
     AreaSample s;
     s.position = barycentric.x * p0 + barycentric.y * p1 + barycentric.z * p2;
     s.error = gamma_bound(7.0f) * (abs(barycentric.x * p0) + abs(barycentric.y * p1) + abs(barycentric.z * p2)) +
-              off_plane * abs(vec3(light.normal));
+              off_plane * abs(light.normal);
     s.ng = triangle_light_normal(light, barycentric);
     s.uv = triangle_light_uv(light, barycentric);
-    s.pdf = light.v2.w;
+    s.pdf = light.inverse_area;
     return s;
 }
 
 FN bool sample_triangle_light(IN(LightRecord) light, vec3 ref_p, vec2 u, OUT(ShapeSample) s) {
-    vec3 p0 = vec3(light.v0);
-    vec3 e1 = vec3(light.v1) - p0;
-    vec3 e2 = vec3(light.v2) - p0;
+    vec3 p0 = light.p0;
+    vec3 e1 = light.p1 - p0;
+    vec3 e2 = light.p2 - p0;
     s.uv = vec2(0.0f);
     s.offset = light.shadow_end;  // triangle_light (core/scene/area_lights.cpp)
     vec3 a;
@@ -194,7 +194,7 @@ FN bool sample_triangle_light(IN(LightRecord) light, vec3 ref_p, vec2 u, OUT(Sha
         barycentric = sample_uniform_triangle(u);
         s.position = p0 + barycentric.y * e1 + barycentric.z * e2;
         s.ng = triangle_light_normal(light, barycentric);
-        if (!shape_sample_from_area(ref_p, light.v2.w, s)) return false;
+        if (!shape_sample_from_area(ref_p, light.inverse_area, s)) return false;
     }
     s.uv = triangle_light_uv(light, barycentric);
     return true;
@@ -206,7 +206,7 @@ FN float pdf_triangle_light(IN(LightRecord) light, vec3 ref_p, vec3 position, ve
     vec3 c;
     float solid_angle = triangle_sampled_solid_angle(light, ref_p, a, b, c);
     if (solid_angle > 0.0f) return 1.0f / solid_angle;
-    return pdf_of_area(light.v2.w, length_squared(position - ref_p), dot3(ng, wi));
+    return pdf_of_area(light.inverse_area, length_squared(position - ref_p), dot3(ng, wi));
 }
 
 // ---- Quadrics --------------------------------------------------------------------------------------------------------
@@ -214,37 +214,37 @@ FN float pdf_triangle_light(IN(LightRecord) light, vec3 ref_p, vec3 position, ve
 FN float determinant_of(vec4 r0, vec4 r1, vec4 r2) { return dot3(vec3(r0), cross3(vec3(r1), vec3(r2))); }
 
 // Area in the quadric's own space.
-FN float quadric_area(uint kind, vec4 params) {
-    if (kind == GEOMETRY_DISK) return 0.5f * params.w * (params.y - params.z) * (params.y + params.z);
-    return params.w * params.x * (params.z - params.y);
+FN float quadric_area(uint kind, IN(Quadric) q) {
+    if (kind == GEOMETRY_DISK) return 0.5f * q.phi_max * (q.radius - q.inner_radius) * (q.radius + q.inner_radius);
+    return q.phi_max * q.radius * (q.z_max - q.z_min);
 }
 
-FN bool sphere_is_whole(vec4 params) { return params.y <= -params.x && params.z >= params.x && params.w >= TWO_PI; }
+FN bool sphere_is_whole(IN(Quadric) q) { return q.z_min <= -q.radius && q.z_max >= q.radius && q.phi_max >= TWO_PI; }
 
 // Density in area (set's space) of sampling the quadric uniformly in its own space, where its set normal (quadric_set_normal)
 // has the length given.
 FN float quadric_pdf_area(IN(GeometryRecord) g, IN(TransformRecord) m, float normal_length) {
-    return abs(determinant_of(m.from0, m.from1, m.from2)) / (quadric_area(g.kind, g.params) * normal_length);
+    return abs(determinant_of(m.from0, m.from1, m.from2)) / (quadric_area(g.kind, g.quadric) * normal_length);
 }
 
 // Uniform in area, in the quadric's own space.
-FN vec3 sample_quadric_point(uint kind, vec4 params, vec2 u) {
+FN vec3 sample_quadric_point(uint kind, IN(Quadric) q, vec2 u) {
     if (kind == GEOMETRY_DISK) {
-        if (params.z == 0.0f && params.w >= TWO_PI) {
+        if (q.inner_radius == 0.0f && q.phi_max >= TWO_PI) {
             vec2 d = sample_concentric_disk(u);
-            return vec3(params.y * d.x, params.y * d.y, params.x);
+            return vec3(q.radius * d.x, q.radius * d.y, q.height);
         }
-        float r = sqrt(lerp_of(u.x, params.z * params.z, params.y * params.y));
-        return spherical_direction(r, params.x, u.y * params.w);
+        float r = sqrt(lerp_of(u.x, q.inner_radius * q.inner_radius, q.radius * q.radius));
+        return spherical_direction(r, q.height, u.y * q.phi_max);
     }
-    float z = lerp_of(u.x, params.y, params.z);
-    float r = kind == GEOMETRY_SPHERE ? safe_sqrt((params.x - z) * (params.x + z)) : params.x;
-    return spherical_direction(r, z, u.y * params.w);
+    float z = lerp_of(u.x, q.z_min, q.z_max);
+    float r = kind == GEOMETRY_SPHERE ? safe_sqrt((q.radius - z) * (q.radius + z)) : q.radius;
+    return spherical_direction(r, z, u.y * q.phi_max);
 }
 
 // 1 - cos of the half angle of the cone that a whole sphere fills, seen from `ref_p` (quadric's space); 0 from inside.
-FN float sphere_cone(vec4 params, vec3 ref_p) {
-    vec3 f = ref_p / params.x;
+FN float sphere_cone(IN(Quadric) q, vec3 ref_p) {
+    vec3 f = ref_p / q.radius;
     float d2 = length_squared(f);
     if (!(d2 > 1.001f)) return 0.0f;
     float sin2 = 1.0f / d2;
@@ -266,14 +266,14 @@ FN float sphere_cone_stretch(IN(TransformRecord) m, float stretch) {
 
 FN AreaSample sample_quadric_area(uint geometry, vec2 u) {
     GeometryRecord g = geometries[geometry];
-    vec3 p = sample_quadric_point(g.kind, g.params, u);
+    vec3 p = sample_quadric_point(g.kind, g.quadric, u);
     AreaSample s;
     s.position = quadric_set_position(geometry, p, s.error);
     vec3 n = quadric_set_normal(geometry, p);
     float n_length = length_of(n);
     s.ng = n / n_length;
     s.uv = vec2(0.0f);
-    if (HAS(EFFECT_LIGHT_TEXTURES) || HAS(EFFECT_ALPHA)) s.uv = quadric_uv(g.kind, g.params, p);
+    if (HAS(EFFECT_LIGHT_TEXTURES) || HAS(EFFECT_ALPHA)) s.uv = quadric_uv(g.kind, g.quadric, p);
     s.pdf = quadric_pdf_area(g, transforms[g.transform], n_length);
     return s;
 }
@@ -283,12 +283,12 @@ FN bool sample_quadric_light(uint geometry, vec3 ref_p, vec2 u, OUT(ShapeSample)
     TransformRecord m = transforms[g.transform];
     uint kind = g.kind;
     s.uv = vec2(0.0f);
-    if (kind == GEOMETRY_SPHERE && sphere_is_whole(g.params) && sphere_hides_its_inside(g)) {
+    if (kind == GEOMETRY_SPHERE && sphere_is_whole(g.quadric) && sphere_hides_its_inside(g)) {
         vec3 o = transform_point(m.from0, m.from1, m.from2, ref_p);
-        float one_minus_cos_max = sphere_cone(g.params, o);
+        float one_minus_cos_max = sphere_cone(g.quadric, o);
         if (one_minus_cos_max > 0.0f) {
             // Uniform in the cone that the sphere fills; distances in units of the radius.
-            vec3 f = o / g.params.x;
+            vec3 f = o / g.quadric.radius;
             float d = length_of(f);
             Frame frame = frame_from_z(f / -d);
             vec3 local = sample_uniform_cone(u, one_minus_cos_max);
@@ -298,19 +298,19 @@ FN bool sample_quadric_light(uint geometry, vec3 ref_p, vec2 u, OUT(ShapeSample)
             // The point, from the sphere's centre: no difference of large numbers, however far the sphere is.
             vec3 local_point = vec3(t * local.x, t * local.y, -(d * sin2 + half_chord * local.z));
             vec3 p = to_world(frame, local_point);
-            p = p * (g.params.x / length_of(p));
+            p = p * (g.quadric.radius / length_of(p));
             vec3 w = to_world(frame, local);
             vec3 set_w = transform_vector(m.to0, m.to1, m.to2, w);
             float stretch = length_of(set_w);
             vec3 n = quadric_set_normal(geometry, p);
             s.ng = n / length_of(n);
             s.wi = set_w / stretch;
-            s.distance = t * g.params.x * stretch;
+            s.distance = t * g.quadric.radius * stretch;
             vec3 error;
             s.position = quadric_set_position(geometry, p, error);
             s.offset = way_out_length(s.position, error, s.ng);
             s.pdf = pdf_uniform_cone(one_minus_cos_max) * sphere_cone_stretch(m, stretch);
-            if (HAS(EFFECT_LIGHT_TEXTURES) || HAS(EFFECT_ALPHA)) s.uv = quadric_uv(kind, g.params, p);
+            if (HAS(EFFECT_LIGHT_TEXTURES) || HAS(EFFECT_ALPHA)) s.uv = quadric_uv(kind, g.quadric, p);
             return is_finite(s.pdf);
         }
     }
@@ -326,8 +326,8 @@ FN float pdf_quadric_light(uint geometry, vec3 ref_p, vec3 position, vec3 ng, ve
     GeometryRecord g = geometries[geometry];
     TransformRecord m = transforms[g.transform];
     uint kind = g.kind;
-    if (kind == GEOMETRY_SPHERE && sphere_is_whole(g.params) && sphere_hides_its_inside(g)) {
-        float one_minus_cos_max = sphere_cone(g.params, transform_point(m.from0, m.from1, m.from2, ref_p));
+    if (kind == GEOMETRY_SPHERE && sphere_is_whole(g.quadric) && sphere_hides_its_inside(g)) {
+        float one_minus_cos_max = sphere_cone(g.quadric, transform_point(m.from0, m.from1, m.from2, ref_p));
         if (one_minus_cos_max > 0.0f) {
             float stretch = 1.0f / length_of(transform_vector(m.from0, m.from1, m.from2, wi));
             return pdf_uniform_cone(one_minus_cos_max) * sphere_cone_stretch(m, stretch);

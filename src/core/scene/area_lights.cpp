@@ -95,10 +95,12 @@ kernel::LightRecord triangle_light(const glm::vec3& p0, const glm::vec3& p1, con
     if (!smooth && (geometry_flags & kernel::GEOMETRY_FLIP) != 0u) normal = -normal;
     kernel::LightRecord light{};
     light.kind = kernel::LIGHT_TRIANGLE;
-    light.v0 = {p0, float(0.5 * length)};
-    light.normal = {normal, smooth ? 1.0f : 0.0f};
-    light.v1 = {p1, float(radius)};
-    light.v2 = {p2, 1.0f / light.v0.w};
+    light.p0 = p0, light.p1 = p1, light.p2 = p2;
+    light.normal = normal;
+    light.smooth_normals = smooth ? 1.0f : 0.0f;
+    light.area = float(0.5 * length);
+    light.inverse_area = 1.0f / light.area;
+    light.extent = float(radius);
     // The distance from the triangle, along its normal, at which shadow rays to it end. It is large enough for any point of the
     // triangle (way_out and triangle_plane_error bound a single point): it covers the rounding of the corners' coordinates, and
     // that of the plane as tracers find it from one of them.

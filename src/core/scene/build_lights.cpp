@@ -44,8 +44,8 @@ void finish_lights(BuildContext& context) {
         const Spectrum emission = light.record.emission;
         if (!std::isfinite(emission[0]) || !std::isfinite(emission[1]) || !std::isfinite(emission[2]))
             context.diagnostics.error(light.location, "the light's emission is not finite", "smaller numbers");
-        // Positions and directions are computed with the current transform; v0 of triangles is in world space already.
-        const kernel::vec4 place = light.record.v0 + light.record.v1;
+        // Positions and directions are computed with the current transform; p0 of triangles is in world space already.
+        const kernel::vec3 place = light.record.p0 + light.record.p1;
         if (!std::isfinite(place.x + place.y + place.z) ||
             std::abs(place.x) + std::abs(place.y) + std::abs(place.z) > 8.0f * kLargestCoordinate)
             context.diagnostics.error(light.location, "the light has no finite position or direction",

@@ -72,9 +72,9 @@ Box set_bounds(const Scene& scene, const GeometrySet& set) {
         } else {
             Box own;
             const bool disk = g.kind == kernel::GEOMETRY_DISK;
-            const double radius = disk ? g.params.y : g.params.x;
-            own.add({-radius, -radius, disk ? g.params.x : g.params.y});
-            own.add({radius, radius, disk ? g.params.x : g.params.z});
+            const double radius = g.quadric.radius;
+            own.add({-radius, -radius, disk ? g.quadric.height : g.quadric.z_min});
+            own.add({radius, radius, disk ? g.quadric.height : g.quadric.z_max});
             own.add_to(box, scene.transforms[g.transform]);
         }
     }

@@ -39,7 +39,7 @@ KERNEL(photon_map_rays) {
             FirstHit unseen = no_first_hit();
             follow_eye_path(numbers, false, EYE_BRANCH_CHANCE, path, unseen, end, query);
             end.throughput = slot_of(path.walk.throughput, 1.0f);
-            film[index].counts.y += traced_rays[0];
+            film[index].rays += traced_rays[0];
         }
     }
     ends[index] = end;

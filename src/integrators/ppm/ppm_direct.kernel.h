@@ -47,5 +47,5 @@ KERNEL(ppm_direct) {
         hits[at].radiance = slot_of(radiance, hit.radiance.w);
     }
     if (i != w.samples) REPORT_UNFINISHED();
-    film[index].counts.y += traced_rays[0];
+    film[index].rays += traced_rays[0];
 }

@@ -37,6 +37,6 @@ KERNEL(sppm_eye) {
         queries[at] = query;
     }
     if (i != count) REPORT_UNFINISHED();
-    pixel.counts.y += traced_rays[0];
+    pixel.rays += traced_rays[0];
     film[place] = pixel;
 }

@@ -14,7 +14,7 @@ void build(LightContext& context) {
     glm::vec3 from;
     const glm::vec3 direction = read_direction(context, from);
     const glm::mat3 m(context.light.world_from_light.matrix[0]);
-    record.v0 = {-glm::normalize(m * direction), 0.0f};
+    record.p0 = -glm::normalize(m * direction);
     Spectrum irradiance = read_emission(context, "L");
     if (const float illuminance = context.reader.get_float("illuminance"); illuminance > 0.0f)
         irradiance *= illuminance;

@@ -21,7 +21,7 @@ bool begin_light(LightContext& context, kernel::LightRecord& record, TextureBuil
     const glm::mat4& m = context.light.world_from_light.matrix[0];
     record.image = context.build.textures.image(filename, content, context.reader.location("filename"));
     record.transform = context.build.add_transform(m, context.light.location);
-    record.v0 = {transformed_point(m, glm::vec3(0.0f)), 0.0f};
+    record.p0 = transformed_point(m, glm::vec3(0.0f));
     context.ask(kernel::EFFECT_IMAGES);
     return record.image != kNone;
 }
@@ -44,7 +44,7 @@ void build_projection(LightContext& context) {
     const double aspect = double(width) / height;
     // The field of view is that of the shorter side, as for cameras.
     const double x = half * std::fmax(aspect, 1.0), y = half * std::fmax(1.0 / aspect, 1.0);
-    record.v2 = {float(-x), float(-y), float(x), float(y)};
+    set_projection_window(record, {float(-x), float(-y), float(x), float(y)});
     // Luminous power: the integral of intensity over solid angle; the area element of the picture at z = 1 subtends cos^3 of
     // its area.
     const std::vector<glm::vec3> pixels = context.build.textures.pixels(record.image);
@@ -65,7 +65,7 @@ void build_goniometric(LightContext& context) {
         // Without an image it is a plain point light, as in pbrt-v4.
         context.ask(kernel::EFFECT_POINT_LIGHTS);
         record = blank_light(kernel::LIGHT_POINT);
-        record.v0 = {transformed_point(context.light.world_from_light.matrix[0], glm::vec3(0.0f)), 0.0f};
+        record.p0 = transformed_point(context.light.world_from_light.matrix[0], glm::vec3(0.0f));
         add_light(context, record, intensity, 4.0 * kPi);
         return;
     }

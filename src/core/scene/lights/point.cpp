@@ -24,7 +24,7 @@ void build_point(LightContext& context) {
     kernel::LightRecord record = blank_light(kernel::LIGHT_POINT);
     const std::vector<float> from = context.reader.get_tuple("from", 3);
     const glm::vec3 p = from.size() == 3 ? glm::vec3(from[0], from[1], from[2]) : glm::vec3(0.0f);
-    record.v0 = {transformed_point(context.light.world_from_light.matrix[0], p), 0.0f};
+    record.p0 = transformed_point(context.light.world_from_light.matrix[0], p);
     add_light(context, record, read_emission(context, "I"), 4.0f * kPi);
 }
 
@@ -39,9 +39,8 @@ void build_spot(LightContext& context) {
     const glm::vec3 direction = read_direction(context, from);
     const glm::mat4& m = context.light.world_from_light.matrix[0];
     const glm::vec3 axis = glm::mat3(m) * direction;
-    record.v0 = {transformed_point(m, from), 0.0f};
-    record.v1 = {glm::normalize(axis), begin};
-    record.v2 = {0.0f, 0.0f, 0.0f, end};
+    record.p0 = transformed_point(m, from);
+    set_spot(record, glm::normalize(axis), begin, end);
     // pbrt-v4, lights.cpp, SpotLight::Create: the falloff counts as half.
     add_light(context, record, read_emission(context, "I"), 2.0f * kPi * ((1.0f - begin) + (begin - end) / 2.0f));
 }

@@ -67,7 +67,7 @@ void add_lights(ShapeContext& context, const Mesh& mesh, uint32_t geometry) {
         double area;
         if (mesh.corners == 3) {
             light = triangle_light(p[0], p[1], p[2], context.build.scene.geometries[geometry].flags);
-            area = double(light.v0.w);
+            area = double(light.area);
         } else {
             area = patch_area(p[0], p[1], p[2], p[3]);
             light.kind = kernel::LIGHT_GEOMETRY;

@@ -16,12 +16,12 @@ float mean_stretch(const glm::mat4& m) {
     return float(std::cbrt(std::abs(glm::determinant(glm::dmat3(glm::mat3(m))))));
 }
 
-void add_quadric(ShapeContext& context, uint32_t kind, kernel::vec4 params, float area) {
+void add_quadric(ShapeContext& context, uint32_t kind, const kernel::Quadric& quadric, float area) {
     const glm::mat4& matrix = context.shape.world_from_object.matrix[0];
     context.build.ask(kernel::EFFECT_QUADRICS, context.asked_by);
     const uint32_t index = context.add_geometry(kind, 0u, 1u);
     kernel::GeometryRecord& geometry = context.build.scene.geometries[index];
-    geometry.params = params;
+    geometry.quadric = quadric;
     geometry.transform = context.build.add_transform(matrix, context.shape.location);
     if (!context.area_light) return;
     begin_area_lights(context, index, 1u);
@@ -29,6 +29,13 @@ void add_quadric(ShapeContext& context, uint32_t kind, kernel::vec4 params, floa
     light.kind = kernel::LIGHT_GEOMETRY;
     const float stretch = mean_stretch(matrix);
     add_area_light(context, light, index, 0u, area * stretch * stretch, area);
+}
+
+// A sphere or a cylinder.
+kernel::Quadric swept(float radius, float low, float high, float phi) {
+    kernel::Quadric q{};
+    q.radius = radius, q.z_min = low, q.z_max = high, q.phi_max = phi;
+    return q;
 }
 
 float read_phi(ShapeContext& context) {
@@ -54,7 +61,7 @@ void build_sphere(ShapeContext& context) {
         reader.error("zmin", "\"zmin\" and \"zmax\" leave nothing of the sphere", "heights between -radius and radius");
         return;
     }
-    add_quadric(context, kernel::GEOMETRY_SPHERE, {radius, low, high, phi}, phi * radius * (high - low));
+    add_quadric(context, kernel::GEOMETRY_SPHERE, swept(radius, low, high, phi), phi * radius * (high - low));
 }
 
 void build_disk(ShapeContext& context) {
@@ -64,8 +71,9 @@ void build_disk(ShapeContext& context) {
         reader.error("innerradius", "\"innerradius\" leaves nothing of the disk", "less than \"radius\"");
         return;
     }
-    add_quadric(context, kernel::GEOMETRY_DISK, {reader.get_float("height"), radius, inner, phi},
-                0.5f * phi * (radius * radius - inner * inner));
+    kernel::Quadric disk{};
+    disk.height = reader.get_float("height"), disk.radius = radius, disk.inner_radius = inner, disk.phi_max = phi;
+    add_quadric(context, kernel::GEOMETRY_DISK, disk, 0.5f * phi * (radius * radius - inner * inner));
 }
 
 void build_cylinder(ShapeContext& context) {
@@ -73,7 +81,7 @@ void build_cylinder(ShapeContext& context) {
     const float radius = reader.get_float("radius"), phi = read_phi(context);
     float low = reader.get_float("zmin"), high = reader.get_float("zmax");
     if (!read_heights(context, low, high)) return;
-    add_quadric(context, kernel::GEOMETRY_CYLINDER, {radius, low, high, phi}, phi * radius * (high - low));
+    add_quadric(context, kernel::GEOMETRY_CYLINDER, swept(radius, low, high, phi), phi * radius * (high - low));
 }
 
 ParameterSpec radius_spec() { return real("radius", 1.0, "radius").above(0).in("scene units"); }
