@@ -3,10 +3,10 @@
 //
 //     effects_bench SCENE WIDTHxHEIGHT SAMPLES registered|exact     prints JSON
 #include "backends/cpu/cpu_scene.h"
-#include "core/film.h"
-#include "core/integrator.h"
+#include "core/render/film.h"
+#include "core/render/integrator.h"
 #include "core/scene/load.h"
-#include "integrators/path/path.params.h"
+#include "integrators/path/path_params.h"
 
 #include <nlohmann/json.hpp>
 #include <xmmintrin.h>

@@ -2,12 +2,12 @@
 // and rtcOccluded1) on exactly the same rays, in the same process, with the same threads and blocks of work, in alternation.
 //
 //     rays_bench SCENE WIDTHxHEIGHT SAMPLES THREADS REPEATS      prints JSON
+#include "accel/rays/embree_scene.h"
 #include "backends/cpu/cpu_scene.h"
-#include "backends/cpu/embree_scene.h"
-#include "core/film.h"
-#include "core/integrator.h"
+#include "core/render/film.h"
+#include "core/render/integrator.h"
 #include "core/scene/load.h"
-#include "integrators/path/path.params.h"
+#include "integrators/path/path_params.h"
 
 #include <nlohmann/json.hpp>
 #include <oneapi/tbb/blocked_range.h>

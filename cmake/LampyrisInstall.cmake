@@ -30,8 +30,7 @@ install(DIRECTORY src/materials ${PROJECT_BINARY_DIR}/generated/materials ${LAMP
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lampyris FILES_MATCHING PATTERN *.h)
 # Photon maps and their consumers, which are combined with those of plugins.
 install(DIRECTORY src/accel src/integrators DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lampyris
-  FILES_MATCHING PATTERN *.gather.h PATTERN *.consumer.h PATTERN *.layout.h PATTERN *.params.h
-  PATTERN *.functions.h)
+  FILES_MATCHING PATTERN *.h PATTERN *.cmake)
 # Installed files keep the dates of their sources, which may be earlier than a plugin's last build. This file is dated
 # when its contents last changed, and plugins are rebuilt completely after that.
 install(CODE "

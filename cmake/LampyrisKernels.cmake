@@ -1,20 +1,43 @@
 # lampyris_add_kernels(TARGET BASE dirs... KERNELS files... HEADERS files... GATHERS files... CONSUMERS files...
 #                      OTHER_GATHERS names... OTHER_CONSUMERS names...)
 #
-# Makes kernel files part of a target, for both compilers: each *.kernel.h becomes C++ translation units (one per effect
-# variant, see backends/cpu/variants). Its text and the headers' texts are embedded (.incbin) for glslang at run time. A
-# file is identified by its path below a folder of BASE ("integrators/path/path.radiance.h"); the kernel's name is the
-# file's name.
+# Makes kernel files part of a target, for both compilers: each *.kernel.h and *.radiance.h becomes C++ translation units
+# (see lampyris_kernel). Its text and the headers' texts are embedded (.incbin) for glslang at run time. A file is identified
+# by its path below a folder of BASE ("integrators/path/path.radiance.h"); the kernel's name is the file's name.
 #
 # A gather kernel is a pair of files, CONSUMER+GATHER (src/core/kernel/gather.h): each gather file is built with each
 # consumer, including those of another target (OTHER_..., by name), and vice versa.
 set(LAMPYRIS_KERNELS_DIR ${CMAKE_CURRENT_LIST_DIR})
 
+# lampyris_kernel(FILE [TRACES_RAYS] [GLSL_ONLY] [CPU_EFFECTS sets...])
+#
+# How the C++ compiler builds a kernel of the current folder. Stands in the folder's NAME.cmake, or in a plugin's
+# CMakeLists.txt before lampyris_add_plugin. A file without this is built once, with all effects.
+#
+#   TRACES_RAYS  there is one build for each tracer; always so for NAME.radiance.h
+#   GLSL_ONLY    there is none: the kernel needs hardware that no CPU backend has
+#   CPU_EFFECTS  there is one build for each of these sets of effects (core/kernel/effects.h), in quotes if they are
+#                expressions; a scene runs on the smallest one that has all of its effects. kAllEffects is for all others
+function(lampyris_kernel file)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "TRACES_RAYS;GLSL_ONLY" "" "CPU_EFFECTS")
+  set(where "${CMAKE_CURRENT_LIST_FILE}: lampyris_kernel(${file} ...)")
+  if(arg_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "${where}: wrong arguments: ${ARGN}; cmake/LampyrisKernels.cmake says what it takes")
+  endif()
+  set(path ${CMAKE_CURRENT_LIST_DIR}/${file})
+  if(NOT EXISTS ${path})
+    message(FATAL_ERROR "${where}: there is no such file")
+  endif()
+  foreach(word TRACES_RAYS GLSL_ONLY CPU_EFFECTS)
+    set_property(GLOBAL PROPERTY "LAMPYRIS_KERNEL_${word}:${path}" "${arg_${word}}")
+  endforeach()
+endfunction()
+
 function(lampyris_add_kernels target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "BASE;KERNELS;HEADERS;GATHERS;CONSUMERS;OTHER_GATHERS;OTHER_CONSUMERS")
   set(out ${CMAKE_CURRENT_BINARY_DIR}/kernels/${target})
   string(MAKE_C_IDENTIFIER "lampyris_text_${target}" symbols)
-  set(content "#include \"core/kernel_registry.h\"\n")
+  set(content "#include \"core/device/kernel_registry.h\"\n")
   set(index 0)
   set(files ${arg_KERNELS} ${arg_HEADERS} ${arg_GATHERS} ${arg_CONSUMERS})
   foreach(file ${files})
@@ -94,19 +117,17 @@ function(lampyris_configured_by file)
   endif()
 endfunction()
 
-# Whether a file is not compiled as C++: files that need hardware which no CPU backend has contain a line that says so.
+# Whether a file is not compiled as C++.
 function(lampyris_glsl_only file result)
-  lampyris_configured_by(${file})
-  file(STRINGS ${file} lines REGEX "^#define KERNEL_GLSL_ONLY")
-  if(lines)
+  get_property(glsl_only GLOBAL PROPERTY "LAMPYRIS_KERNEL_GLSL_ONLY:${file}")
+  if(glsl_only)
     set(${result} ON PARENT_SCOPE)
   else()
     set(${result} OFF PARENT_SCOPE)
   endif()
 endfunction()
 
-# The C++ units of one kernel, whose name is its files' names joined by '+'; `file` is the one that lists the effect
-# sets. There is one unit per tracer and effect variant, so that they compile in parallel.
+# The C++ units of one kernel, whose name is its files' names joined by '+'; `file` is the one whose effect sets count. There is one unit per tracer and effect variant, so that they compile in parallel.
 function(lampyris_kernel_units target out KERNEL_FILE file)
   string(REPLACE "+" ";" parts "${KERNEL_FILE}")
   set(KERNEL_NAME "")
@@ -117,23 +138,18 @@ function(lampyris_kernel_units target out KERNEL_FILE file)
     list(APPEND KERNEL_NAME ${name})
     string(APPEND KERNEL_INCLUDES "#include \"${part}\"\n")
   endforeach()
-  if(KERNEL_FILE MATCHES "\\.radiance\\.h$")  # as kernel_parts does (core/kernel_registry.h)
+  if(KERNEL_FILE MATCHES "\\.radiance\\.h$")  # as kernel_parts does (core/device/kernel_registry.h)
     string(APPEND KERNEL_INCLUDES "#include \"core/kernel/pixel_loop.h\"\n")
   endif()
   list(JOIN KERNEL_NAME "+" KERNEL_NAME)
-  file(STRINGS ${file} variants REGEX "^#define KERNEL_CPU_VARIANTS ")
-  set(KERNEL_VARIANTS "kAllEffects")
-  if(variants AND (LAMPYRIS_SPECIALISED_KERNELS OR NOT DEFINED LAMPYRIS_SPECIALISED_KERNELS))
-    string(REGEX REPLACE "^#define KERNEL_CPU_VARIANTS +" "" KERNEL_VARIANTS "${variants}")
-    string(REPLACE "," ";" KERNEL_VARIANTS "${KERNEL_VARIANTS}")
-    string(REPLACE " " "" KERNEL_VARIANTS "${KERNEL_VARIANTS}")
+  get_property(KERNEL_VARIANTS GLOBAL PROPERTY "LAMPYRIS_KERNEL_CPU_EFFECTS:${file}")
+  if(NOT KERNEL_VARIANTS OR (DEFINED LAMPYRIS_SPECIALISED_KERNELS AND NOT LAMPYRIS_SPECIALISED_KERNELS))
+    set(KERNEL_VARIANTS "kAllEffects")
   endif()
-  # Kernels that trace no rays are built once, for both tracers: gather kernels, and those that do not read the scene.
-  file(STRINGS ${file} scene REGEX "^#include \"(core/kernel/(scene|trace|radiance)\\.h|.*\\.(kernel|radiance)\\.h)\"")
-  lampyris_configured_by(${file})
-  set(tracers embree bvh2)
-  if(NOT scene OR KERNEL_FILE MATCHES "\\+")
-    set(tracers any)
+  get_property(traces_rays GLOBAL PROPERTY "LAMPYRIS_KERNEL_TRACES_RAYS:${file}")
+  set(tracers any)
+  if(traces_rays OR KERNEL_FILE MATCHES "\\.radiance\\.h$")
+    set(tracers embree bvh2)
   endif()
   foreach(KERNEL_TRACER ${tracers})
     set(number 0)

@@ -1,4 +1,4 @@
-# Materials are folders: NAME/NAME.cpp (the host's part), NAME/NAME.material.h (what kernels do with it; docs/material-guide.md) and
+# Materials are folders: NAME/NAME.cpp (the host's part), NAME/NAME_bsdf.h (what kernels do with it; docs/material-guide.md) and
 # NAME/NAME.cmake, which says here what the dispatch has to know of it:
 #
 # lampyris_material(NAME RANK number [EFFECT name [COST text]] [RARELY] [SCATTERS_AS prefix] [ESTIMATES] [SCATTERS_NOTHING])
@@ -62,10 +62,10 @@ function(lampyris_add_material folder include)
   if("${scatters_nothing}" STREQUAL "")
     message(FATAL_ERROR "${folder}/${material_name}.cmake: does not call lampyris_material(${material_name} ...)")
   endif()
-  if(NOT scatters_nothing AND NOT EXISTS ${folder}/${material_name}.material.h)
-    message(FATAL_ERROR "${folder}: no ${material_name}.material.h, which has its functions for kernels (docs/material-guide.md)")
+  if(NOT scatters_nothing AND NOT EXISTS ${folder}/${material_name}_bsdf.h)
+    message(FATAL_ERROR "${folder}: no ${material_name}_bsdf.h, which has its functions for kernels (docs/material-guide.md)")
   endif()
-  set_property(GLOBAL PROPERTY LAMPYRIS_HEADER_${material_name} ${include}${material_name}/${material_name}.material.h)
+  set_property(GLOBAL PROPERTY LAMPYRIS_HEADER_${material_name} ${include}${material_name}/${material_name}_bsdf.h)
 endfunction()
 
 # The materials of the tree, and those of the folders ARGN; writes from list.h.in and dispatch.h.in the headers that kernels

@@ -6,6 +6,12 @@
 # consumer of Lampyris and of this plugin, and CONSUMERS with each photon map.
 set(LAMPYRIS_PLUGIN_DIR ${CMAKE_CURRENT_LIST_DIR})
 
+# How Lampyris' photon maps and consumers are built.
+file(GLOB_RECURSE lampyris_declarations ${LAMPYRIS_KERNEL_INCLUDE}/accel/*.cmake ${LAMPYRIS_KERNEL_INCLUDE}/integrators/*.cmake)
+foreach(lampyris_declaration IN LISTS lampyris_declarations)
+  include(${lampyris_declaration})
+endforeach()
+
 function(lampyris_add_plugin name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;KERNELS;HEADERS;GATHERS;CONSUMERS")
   if(arg_UNPARSED_ARGUMENTS OR NOT arg_SOURCES)

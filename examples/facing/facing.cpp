@@ -1,5 +1,5 @@
-#include "core/integrator.h"
-#include "facing/facing.params.h"
+#include "core/render/integrator.h"
+#include "facing/facing_params.h"
 
 namespace {
 

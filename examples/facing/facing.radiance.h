@@ -1,6 +1,6 @@
 // Facing ratio: how squarely each surface faces the viewer, cos(angle between normal and view ray) ^ power.
 #include "core/kernel/radiance.h"
-#include "facing/facing.params.h"
+#include "facing/facing_params.h"
 
 BUFFER_RO(1, FacingParams, params)
 

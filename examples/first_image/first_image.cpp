@@ -1,5 +1,5 @@
 // Renders a scene that is a text of the program's own, and shows the image in the terminal.
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/render/render.h"
 
 #include <algorithm>

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from lab.runs import ROOT
 
-SUFFIXES = (".kernel.h", ".gather.h", ".layout.h")
+KINDS = ("construction", "gathering", "shared")
 _OF_STRUCTURE = re.compile(r'#include "(accel/[^"]+)"')
 
 
@@ -33,17 +33,26 @@ def code_lines(text: str) -> int:
 
 def kernel_folder(structure: dict) -> Path:
     """Where a structure of methods.toml has its kernels."""
-    return ROOT / structure.get("kernels", f"src/accel/{structure['use'].partition(':')[0]}")
+    return ROOT / structure.get("kernels", f"src/accel/photons/{structure['use'].partition(':')[0]}")
+
+
+def kind_of(file: Path) -> str | None:
+    """What a header is for; None for parameters, and for headers of the host, which have no include guard of their own."""
+    if file.name.endswith(".kernel.h"):
+        return "construction"
+    if file.name.endswith(".gather.h"):
+        return "gathering"
+    return None if file.name.endswith("_params.h") or "#pragma once" in file.read_text() else "shared"
 
 
 def kernel_files(folder: Path) -> list[Path]:
     """The kernels' files of a folder, and those of other structures that they include."""
-    found = {file: None for file in sorted(folder.glob("*.h")) if file.name.endswith(SUFFIXES)}
+    found = {file: None for file in sorted(folder.glob("*.h")) if kind_of(file)}
     waiting = list(found)
     while waiting:
         for name in _OF_STRUCTURE.findall(waiting.pop().read_text()):
             included = ROOT / "src" / name
-            if included.name.endswith(SUFFIXES) and included.exists() and included not in found:
+            if included.exists() and kind_of(included) and included not in found:
                 found[included] = None
                 waiting.append(included)
     return list(found)
@@ -55,7 +64,6 @@ def kernel_rows(structures: dict[str, dict]) -> list[dict]:
     for name, structure in structures.items():
         files = kernel_files(kernel_folder(structure))
         counts = {file: code_lines(file.read_text()) for file in files}
-        of_suffix = [sum(count for file, count in counts.items() if file.name.endswith(one)) for one in SUFFIXES]
-        row = {"structure": name, "files": len(files) or None, "lines": sum(of_suffix) or None}
-        rows.append({**row, **dict(zip(("construction", "gathering", "shared"), of_suffix, strict=True))})
+        of_kind = {kind: sum(count for file, count in counts.items() if kind_of(file) == kind) for kind in KINDS}
+        rows.append({"structure": name, "files": len(files) or None, "lines": sum(of_kind.values()) or None, **of_kind})
     return rows

@@ -3,10 +3,10 @@
 #include "commands/console.h"
 #include "commands/photon_bench.h"
 #include "commands/render_options.h"
-#include "core/device.h"
-#include "core/error.h"
-#include "core/photon_map.h"
-#include "core/plugin.h"
+#include "core/base/error.h"
+#include "core/base/plugin.h"
+#include "core/device/device.h"
+#include "core/photons/photon_map.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

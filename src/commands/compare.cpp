@@ -1,6 +1,6 @@
 // lampyris compare IMAGE REF: how far an image is from its reference.
 #include "commands/command.h"
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/image/image_io.h"
 #include "core/image/metrics.h"
 

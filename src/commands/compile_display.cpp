@@ -2,7 +2,7 @@
 
 #include "commands/console.h"
 #include "commands/progress.h"
-#include "core/kernel_registry.h"
+#include "core/device/kernel_registry.h"
 
 #include <unistd.h>
 

@@ -1,10 +1,10 @@
 // lampyris describe SCENE: the effects that the scene needs, the directives that need them, and their cost.
 #include "commands/command.h"
 #include "commands/console.h"
-#include "core/error.h"
-#include "core/pbrt_integrators.h"
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/render/pbrt_integrators.h"
 #include "core/scene/load.h"
-#include "core/text.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

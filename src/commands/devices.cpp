@@ -1,6 +1,6 @@
 // lampyris devices: what this machine can render on.
 #include "commands/command.h"
-#include "core/device.h"
+#include "core/device/device.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

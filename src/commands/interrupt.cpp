@@ -1,7 +1,7 @@
 #include "commands/interrupt.h"
 
 #include "commands/console.h"
-#include "core/error.h"
+#include "core/base/error.h"
 
 #include <fcntl.h>
 #include <unistd.h>

@@ -1,7 +1,7 @@
 // Ctrl-C, SIGTERM and a hangup while a scene is rendered.
 #pragma once
 
-#include "core/watch.h"
+#include "core/base/watch.h"
 
 #include <string>
 #include <vector>

@@ -2,8 +2,8 @@
 #include "commands/command.h"
 #include "commands/console.h"
 #include "commands/foreign_words.h"
-#include "core/error.h"
-#include "core/version.h"
+#include "core/base/error.h"
+#include "core/base/version.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,7 @@
 #include "commands/photon_bench.h"
 
-#include "core/photon_map.h"
+#include "accel/photons/collect/collect_host.h"
+#include "core/photons/photon_map.h"
 
 #include <glm/glm.hpp>
 #include <glm/gtc/constants.hpp>
@@ -17,12 +18,9 @@
 namespace lampyris {
 namespace {
 
-constexpr const char* kConsumer = "accel/collect/collect.consumer.h";
+constexpr const char* kConsumer = "accel/photons/collect/collect.consumer.h";
 
-struct CollectResult {  // of accel/collect/collect.layout.h
-    glm::vec4 sum;
-    glm::uvec4 found;
-};
+using kernel::CollectResult;
 
 // The median of at least three runs' seconds.
 double median_seconds(const PhotonBenchSettings& settings, const std::function<void()>& work) {
@@ -105,8 +103,8 @@ PhotonBenchFloor measure_floor(Device& device, uint32_t points, const PhotonBenc
             median_seconds(settings, [&] { device.run(*kernel, nullptr, buffers, 0, span_count(points)); });
         return seconds * 1e9 / points;
     };
-    floor.scatter_ns = measure("core/kernel/bench_scatter.kernel.h", "records", 16);
-    floor.atomic_ns = measure("core/kernel/bench_atomic.kernel.h", "counters", 4);
+    floor.scatter_ns = measure("accel/photons/bench/bench_scatter.kernel.h", "records", 16);
+    floor.atomic_ns = measure("accel/photons/bench/bench_atomic.kernel.h", "counters", 4);
 
     return floor;
 }

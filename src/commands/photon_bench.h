@@ -1,8 +1,8 @@
 // Measurements behind `lampyris bench photon-maps`.
 #pragma once
 
-#include "core/device.h"
-#include "core/photon_map.h"
+#include "core/device/device.h"
+#include "core/photons/photon_map.h"
 
 #include <cstdint>
 #include <string>

@@ -1,10 +1,10 @@
 // lampyris plugins [KIND [NAME]]: what is registered, and the parameters that it takes.
 #include "commands/command.h"
 #include "commands/foreign_words.h"
-#include "core/error.h"
-#include "core/pbrt_integrators.h"
-#include "core/plugin.h"
-#include "core/registry.h"
+#include "core/base/error.h"
+#include "core/base/plugin.h"
+#include "core/base/registry.h"
+#include "core/render/pbrt_integrators.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

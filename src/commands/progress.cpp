@@ -1,7 +1,7 @@
 #include "commands/progress.h"
 
 #include "commands/console.h"
-#include "core/text.h"
+#include "core/base/text.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -1,7 +1,7 @@
 // How a rendering reports its progress: one line that is redrawn on a terminal, plain lines elsewhere, nothing when quiet.
 #pragma once
 
-#include "core/render_session.h"
+#include "core/render/render_session.h"
 
 #include <string>
 

@@ -5,11 +5,11 @@
 #include "commands/interrupt.h"
 #include "commands/progress.h"
 #include "commands/render_options.h"
-#include "core/file.h"
+#include "core/base/file.h"
+#include "core/base/text.h"
 #include "core/image/image_io.h"
 #include "core/render/render.h"
-#include "core/statistics.h"
-#include "core/text.h"
+#include "core/render/statistics.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,7 +1,7 @@
 #include "commands/render_options.h"
 
-#include "core/error.h"
-#include "core/plugin.h"
+#include "core/base/error.h"
+#include "core/base/plugin.h"
 #include "core/scene/limits.h"
 
 #include <fmt/format.h>

@@ -15,7 +15,7 @@ add_executable(snippets snippets.cpp)
 target_link_libraries(snippets PRIVATE Lampyris::lampyris)
 """
 # Each snippet is a function's body; those that do not make a request of their own get this one.
-SNIPPETS_HEAD = """#include "core/error.h"
+SNIPPETS_HEAD = """#include "core/base/error.h"
 #include "core/image/image_io.h"
 #include "core/render/render.h"
 

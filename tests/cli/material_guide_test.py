@@ -50,7 +50,7 @@ def test_the_generator_takes_the_guides_folder(source_dir, generate, tmp_path):
     assert [int(number) for _, number in numbers] == list(range(len(numbers)))
     assert numbers[-1][0] == "ORENNAYAR"  # the highest rank
     dispatch = (tmp_path / "out/materials/dispatch.h").read_text()
-    assert '#include "orennayar/orennayar.material.h"' in dispatch
+    assert '#include "orennayar/orennayar_bsdf.h"' in dispatch
     for function in ["make", "eval", "sample", "is_specular", "chooses_lobe", "transmits", "albedo", "visible_action"]:
         assert dispatch.count(f"orennayar_{function}(") == 1, function
     # All coats share one call for evaluating and one for sampling, because GLSL compilers inline every call.
@@ -76,7 +76,7 @@ def test_without_folders_the_generator_writes_what_the_build_has(generate, build
         ("clay", {"clay.cmake": "lampyris_material(clay)"}, "wrong arguments"),
         ("clay", {"clay.cmake": "lampyris_material(clay RANK first)"}, "wrong arguments"),
         ("clay", {"clay.cmake": "lampyris_material(clay RANK 1 RARE)"}, "wrong arguments"),
-        ("clay", {"clay.cmake": "lampyris_material(clay RANK 1)"}, "no clay.material.h"),
+        ("clay", {"clay.cmake": "lampyris_material(clay RANK 1)"}, "no clay_bsdf.h"),
         ("diffuse", {"diffuse.cmake": "lampyris_material(diffuse RANK 1)"}, "there is a material"),
     ],
 )

@@ -10,8 +10,8 @@ from support.plugin_project import EVERY, build, checked, configure, write_files
 from support.render_program import read_pfm
 
 FLAT = {
-    "CMakeLists.txt": "lampyris_add_plugin(flat SOURCES flat.cpp KERNELS flat.kernel.h HEADERS flat.params.h)\n",
-    "flat.params.h": """#ifndef FLAT_PARAMS
+    "CMakeLists.txt": "lampyris_add_plugin(flat SOURCES flat.cpp KERNELS flat.kernel.h HEADERS flat_params.h)\n",
+    "flat_params.h": """#ifndef FLAT_PARAMS
 #define FLAT_PARAMS
 #include "core/kernel/params.h"
 #define FLAT_PARAMS_LIST(P) P(float, value, 1.0f, 0.0f, 100.0f, "what every pixel shows")
@@ -20,7 +20,7 @@ PARAMS(FlatParams, FLAT_PARAMS_LIST)
 """,
     "flat.kernel.h": """#include "core/kernel/prelude.h"
 #include "core/kernel/layout.h"
-#include "flat/flat.params.h"
+#include "flat/flat_params.h"
 BUFFER_RO(0, FilmWindow, window)
 BUFFER_RO(1, FlatParams, params)
 BUFFER_RW(2, FilmPixel, film)
@@ -31,8 +31,8 @@ KERNEL(flat) {
     film[index].samples += window[0].samples;
 }
 """,
-    "flat.cpp": """#include "core/integrator.h"
-#include "flat/flat.params.h"
+    "flat.cpp": """#include "core/render/integrator.h"
+#include "flat/flat_params.h"
 namespace {
 class Flat : public lampyris::Integrator {
  public:
@@ -111,10 +111,10 @@ def test_an_edited_integrator_is_built_and_loads(installed, tmp_path, generator,
     assert project.value("cpu") == project.value("vulkan") == 2
 
     # The list of parameters, and another file, which the kernel includes.
-    project.edit("flat/flat.params.h", "value, 1.0f,", "value, 3.0f,")
+    project.edit("flat/flat_params.h", "value, 1.0f,", "value, 3.0f,")
     project.edit("flat/flat.kernel.h", "2.0f *", "kMore *")
-    project.edit("flat/flat.kernel.h", '"flat/flat.params.h"\n', '"flat/flat.params.h"\n#include "flat/more.h"\n')
-    project.edit("flat/CMakeLists.txt", "flat.params.h", "flat.params.h more.h")
+    project.edit("flat/flat.kernel.h", '"flat/flat_params.h"\n', '"flat/flat_params.h"\n#include "flat/more.h"\n')
+    project.edit("flat/CMakeLists.txt", "flat_params.h", "flat_params.h more.h")
     write_files(project.folder / "flat", {"more.h": "CONST float kMore = 4.0f;\n"})
     build(project.folder)
     assert project.value("cpu") == project.value("vulkan") == 12

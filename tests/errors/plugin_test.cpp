@@ -1,7 +1,7 @@
 // Files that are not plugins are refused with a message, and before any of their code runs.
-#include "core/plugin.h"
+#include "core/base/plugin.h"
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "support/temporary_folder.h"
 
 #include <fmt/format.h>

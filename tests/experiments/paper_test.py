@@ -304,7 +304,7 @@ def test_lines_of_code_leave_out_comments_and_blanks():
 
 def test_lines_of_kernels_follow_includes_of_other_structures():
     rows = {row["structure"]: row for row in kernel_lines.kernel_rows({"hash_list": {"use": "hash_list"}})}
-    names = {file.name for file in kernel_lines.kernel_files(EXPERIMENTS.parent / "src/accel/hash_list")}
+    names = {file.name for file in kernel_lines.kernel_files(EXPERIMENTS.parent / "src/accel/photons/hash_list")}
     assert any(name.startswith("linked_list") for name in names)
     assert rows["hash_list"]["files"] == len(names)
     assert rows["hash_list"]["lines"] == sum(rows["hash_list"][one] for one in ("construction", "gathering", "shared"))

@@ -1,5 +1,5 @@
 // Any bytes are either a mesh or an InputError, and the indices of a mesh are within its vertices.
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/scene/ply.h"
 
 #include <cassert>

@@ -1,9 +1,9 @@
 // Pixel filters are sampled in proportion to their absolute value with the right sign, and cameras generate rays in the right
 // directions.
 #include "core/scene/filter_table.h"
+#include "support/device_run.h"
 #include "support/histogram.h"
 #include "support/test_scene.h"
-#include "support/device_run.h"
 
 #include <gtest/gtest.h>
 

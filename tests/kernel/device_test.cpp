@@ -1,8 +1,8 @@
 // The guarantees of a device, on every backend: buffers, ranges of indices, errors of unfinished kernels, and, for Vulkan, the
 // cache of compiled kernels.
-#include "core/device.h"
-#include "core/error.h"
-#include "core/kernel_types.h"
+#include "core/base/error.h"
+#include "core/device/device.h"
+#include "core/device/kernel_types.h"
 #include "support/temporary_folder.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // core/kernel/exact.glsl, compiled as C++: quotients and roots round like the processor's, whatever a device's first guess is.
 #include <gtest/gtest.h>
 
-#include "core/kernel/cpp_kernel.h"
+#include "core/device/cpp_kernel.h"
 
 #include <bit>
 #include <cmath>

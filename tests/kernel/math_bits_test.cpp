@@ -1,6 +1,6 @@
 // Every function of math.h gives the same bits on the CPU and on Vulkan.
-#include "core/device.h"
-#include "core/error.h"
+#include "core/base/error.h"
+#include "core/device/device.h"
 
 #include <fmt/format.h>
 #include <glm/vec4.hpp>

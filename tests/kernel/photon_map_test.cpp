@@ -1,6 +1,6 @@
 // Photon maps on every backend: exact ones find the same photons as brute force, and results that must not depend on the
 // machine do not.
-#include "core/photon_map.h"
+#include "core/photons/photon_map.h"
 #include "support/device_run.h"
 #include "support/photon_sets.h"
 

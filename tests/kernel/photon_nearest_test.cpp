@@ -1,6 +1,6 @@
 // The nearest photons, on every backend: each structure that passes on all photons in range finds the same ones as a sort on
 // the host, in the same order, and the density computed from them is unbiased.
-#include "core/photon_map.h"
+#include "core/photons/photon_map.h"
 #include "support/device_run.h"
 #include "support/photon_sets.h"
 #include "support/statistics.h"
@@ -16,7 +16,7 @@ namespace {
 
 using namespace test;
 
-constexpr const char* kNearest = "accel/collect/collect_nearest.consumer.h";
+constexpr const char* kNearest = "accel/photons/collect/collect_nearest.consumer.h";
 
 struct Found {
     uint32_t count = 0, checksum = 0;  // of the keys, in order

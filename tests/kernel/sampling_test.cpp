@@ -2,7 +2,7 @@
 //
 // False alarms: the tests of this file fail by chance with probability below kFalseAlarm in all (Bonferroni's correction over
 // cases and backends). Streams are seeded, so that a run that passed passes again.
-#include "core/kernel_types.h"
+#include "core/device/kernel_types.h"
 #include "support/device_run.h"
 #include "support/histogram.h"
 

@@ -1,6 +1,6 @@
 // For spectrum_test: the same with four wavelengths. Only what turns records into spectra and back is written anew.
 #define SPECTRUM_OF_FOUR
-#include "kernel/spectrum_walk.functions.h"
+#include "kernel/spectrum_walk.h"
 
 BUFFER_RO(0, vec4, inputs)
 BUFFER_RW(1, vec4, results)

@@ -1,6 +1,6 @@
 // Spectrum has as many values as a kernel says, at no cost to kernels that have three: the same functions with four wavelengths compute
 // in each what they compute in each of three.
-#include "core/device.h"
+#include "core/device/device.h"
 #include "support/device_run.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // For spectrum_test: what a path does with a Spectrum, as all kernels have it.
-#include "kernel/spectrum_walk.functions.h"
+#include "kernel/spectrum_walk.h"
 
 BUFFER_RO(0, vec4, inputs)  // per walk: n, k and absorption of a metal and a medium, and a cosine
 BUFFER_RW(1, vec4, results)

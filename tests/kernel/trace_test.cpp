@@ -2,8 +2,8 @@
 //
 // Tracers round differently at edges, so a share of the rays may differ: at most kTies, of rays that graze an edge or hit two
 // surfaces at the same distance. A tracer that loses a primitive or a subtree differs in far more.
-#include "core/device.h"
-#include "core/error.h"
+#include "core/base/error.h"
+#include "core/device/device.h"
 #include "core/scene/scene.h"
 #include "support/quadrics.h"
 

@@ -1,7 +1,7 @@
 // The Khronos validation layers check the Vulkan backend at work, and report nothing; and they are really active.
 #include "backends/vulkan/validation.h"
-#include "core/device.h"
-#include "core/error.h"
+#include "core/base/error.h"
+#include "core/device/device.h"
 #include "core/scene/scene.h"
 #include "support/photon_sets.h"
 

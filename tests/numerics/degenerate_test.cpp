@@ -1,6 +1,6 @@
 // Scenes that no sane person writes, but generators do: each renders something sane on every backend, or is refused with the
 // location of the mistake. Nothing crashes, hangs, or silently makes samples that are not finite.
-#include "core/memory.h"
+#include "core/base/memory.h"
 #include "support/render.h"
 
 #include <gtest/gtest.h>

@@ -2,8 +2,8 @@
 // material, texture, light, camera and filter, with words removed or swapped, and numbers replaced. The seeds are those of the
 // fuzzer (tests/fuzz/corpus/scene); the damage of a round depends only on the round's number. LAMPYRIS_MUTATION_ROUNDS sets the
 // number of rounds. Sanitizers check along in a build that has them.
-#include "core/film.h"
-#include "core/integrator.h"
+#include "core/render/film.h"
+#include "core/render/integrator.h"
 #include "core/scene/build.h"
 
 #include <gtest/gtest.h>

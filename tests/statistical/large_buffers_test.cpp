@@ -2,7 +2,7 @@
 // scene and all copies of photons like this, and make the same image to the bit as with all buffers bound.
 #include "backends/vulkan/addresses.h"
 #include "backends/vulkan/shader_compiler.h"
-#include "core/error.h"
+#include "core/base/error.h"
 #include "support/photon_sets.h"
 #include "support/runs.h"
 
@@ -122,8 +122,8 @@ TEST(LargeBuffersCode, IsValid) {
         said += std::string(message) + "\n";
     });
     for (const bool optimize : {false, true}) {
-        for (const char* file : {"integrators/path/path.radiance.h", "accel/cuckoo/cuckoo_insert.kernel.h",
-                                 "accel/collect/collect.consumer.h+accel/kd_tree/kd_tree.gather.h"}) {
+        for (const char* file : {"integrators/path/path.radiance.h", "accel/photons/cuckoo/cuckoo_insert.kernel.h",
+                                 "accel/photons/collect/collect.consumer.h+accel/photons/kd_tree/kd_tree.gather.h"}) {
             SCOPED_TRACE(file);
             vulkan::ShaderOptions options;
             options.effects = kernel::kDiffuseEffects | kernel::EFFECT_TEXTURES | kernel::EFFECT_IMAGES;

@@ -1,7 +1,7 @@
 // Scenes that name an integrator of pbrt-v4: its replacement gives the same numbers, to the bit, as when it is requested by its
 // own name, and these numbers are right. False alarms: 6e-7 for each mean (five standard errors), below 4e-6 in all.
-#include "core/integrator.h"
-#include "core/pbrt_integrators.h"
+#include "core/render/integrator.h"
+#include "core/render/pbrt_integrators.h"
 #include "support/build_text.h"
 #include "support/render.h"
 

@@ -1,6 +1,6 @@
 // Few pixels with many samples: a slice that a driver's loop limit ends is repeated in halves, and no sample is lost or counted
 // twice. Slices do not change a bit, so the correct image is that of a device without a limit.
-#include "core/error.h"
+#include "core/base/error.h"
 #include "support/limited_device.h"
 #include "support/runs.h"
 
@@ -99,7 +99,7 @@ TEST(SampleSlicesOfDrivers, OnePixelTakesAnyNumberOfSamples) {
     }
 }
 
-// The loops of sppm_eye and sppm_resolve run once per hit point.
+// The loops of eye_pass and hit_resolve run once per hit point.
 TEST(SampleSlicesOfDrivers, OnePixelHasAnyNumberOfHitPoints) {
     for (const std::string& backend : test::usable_backends()) {
         SCOPED_TRACE(backend);

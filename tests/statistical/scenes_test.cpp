@@ -4,7 +4,7 @@
 //
 // Rendered at half size, so that a block is 8x8 pixels. The numbers of samples leave a relative noise of about 3 % a block in
 // diffuse light; a block's test allows two standard errors of its own on top of the 15 %.
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/image/image_io.h"
 #include "support/render.h"
 

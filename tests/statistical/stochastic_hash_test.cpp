@@ -1,6 +1,6 @@
 // Stochastic hashing is unbiased, and as noisy as theory predicts: for fixed photons, over the random grid, hash and selection.
 // stochastic_hash_long_test covers the complete table.
-#include "core/photon_map.h"
+#include "core/photons/photon_map.h"
 #include "support/device_run.h"
 #include "support/hash_variance.h"
 #include "support/photon_sets.h"

@@ -1,7 +1,7 @@
 // Host side of kernel/bsdf_probe.kernel.h: calls scattering functions on a backend.
 #pragma once
 
-#include "core/kernel_types.h"
+#include "core/device/kernel_types.h"
 #include "support/device_run.h"
 
 #include <glm/glm.hpp>

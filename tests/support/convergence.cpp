@@ -1,6 +1,6 @@
 #include "support/convergence.h"
 
-#include "integrators/sppm/photon_mapping.h"
+#include "integrators/photon_paths/progressive.h"
 
 #include <fmt/format.h>
 

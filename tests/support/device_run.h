@@ -1,7 +1,7 @@
 // Running test kernels with typed buffers.
 #pragma once
 
-#include "core/device.h"
+#include "core/device/device.h"
 
 #include <algorithm>
 #include <memory>

@@ -1,6 +1,6 @@
 #include "support/hash_variance.h"
 
-#include "core/photon_map.h"
+#include "core/photons/photon_map.h"
 #include "support/device_run.h"
 #include "support/photon_sets.h"
 

@@ -1,7 +1,7 @@
 // The noise of stochastic hashing: theory (photons are Poisson on a plane, the grid is shifted at random), and a measurement.
 #pragma once
 
-#include "core/device.h"
+#include "core/device/device.h"
 #include "support/statistics.h"
 
 #include <cstdint>

@@ -1,9 +1,9 @@
 // A device that ends a kernel's loops early, as Mesa before 25 does: after a number of samples in one run.
 #pragma once
 
-#include "core/device.h"
-#include "core/error.h"
-#include "core/kernel_types.h"
+#include "core/base/error.h"
+#include "core/device/device.h"
+#include "core/device/kernel_types.h"
 
 #include <map>
 #include <memory>
@@ -32,7 +32,7 @@ class LimitedDevice final : public Device {
     DeviceSceneHandle upload(const Scene& scene) override { return inner_->upload(scene); }
     KernelHandle compile(std::string_view file, uint64_t effects) override {
         KernelHandle kernel = inner_->compile(file, effects);
-        for (const char* sampling : {"ao/ao.radiance.h", "path/path.radiance.h", "sppm/sppm_eye.kernel.h"})
+        for (const char* sampling : {"ao/ao.radiance.h", "path/path.radiance.h", "photon_paths/eye_pass.kernel.h"})
             if (file.ends_with(sampling)) sampling_[kernel.get()] = std::string(file);
         return kernel;
     }

@@ -1,7 +1,8 @@
 // Photons and queries for tests of photon maps, in every distribution that may break a structure.
 #pragma once
 
-#include "core/photon_map.h"
+#include "accel/photons/collect/collect_host.h"
+#include "core/photons/photon_map.h"
 
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -12,11 +13,8 @@
 
 namespace lampyris::test {
 
-struct CollectResult {  // of accel/collect/collect.layout.h
-    glm::vec4 sum;
-    glm::uvec4 found;
-};
-inline constexpr const char* kCollect = "accel/collect/collect.consumer.h";
+using kernel::CollectResult;
+inline constexpr const char* kCollect = "accel/photons/collect/collect.consumer.h";
 
 struct PhotonCase {
     std::string name;

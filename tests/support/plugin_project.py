@@ -26,7 +26,7 @@ KERNEL(every) {
     gather_end(gathered, index);
 }
 """,
-    "every.cpp": """#include "core/photon_map.h"
+    "every.cpp": """#include "core/photons/photon_map.h"
 
 namespace {
 

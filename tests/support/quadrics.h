@@ -1,7 +1,7 @@
 // Quadrics of four numbers: radius, zmin, zmax, phimax of spheres and cylinders; height, radius, inner radius, phimax of disks.
 #pragma once
 
-#include "core/kernel_types.h"
+#include "core/device/kernel_types.h"
 
 namespace lampyris::test {
 

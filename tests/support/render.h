@@ -1,7 +1,7 @@
 // Rendering for tests: from a scene text or file and a backend to the film.
 #pragma once
 
-#include "core/photon_map.h"
+#include "core/photons/photon_map.h"
 #include "core/render/render.h"
 
 #include <cstdint>

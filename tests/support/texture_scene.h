@@ -1,7 +1,7 @@
 // A scene of one far triangle, to which tests add texture programs, images and materials.
 #pragma once
 
-#include "core/device.h"
+#include "core/device/device.h"
 #include "core/scene/noise_table.h"
 #include "core/scene/scene.h"
 #include "support/device_run.h"

@@ -1,7 +1,7 @@
 // Light to display values: the views of our OpenColorIO configuration against the formulas that define them.
 #include "core/image/color.h"
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/image/image_io.h"
 #include "support/temporary_folder.h"
 

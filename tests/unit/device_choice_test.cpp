@@ -1,7 +1,7 @@
 // --device: a number is an index, whatever digits the names contain.
-#include "core/device_choice.h"
+#include "core/device/device_choice.h"
 
-#include "core/error.h"
+#include "core/base/error.h"
 
 #include <gtest/gtest.h>
 

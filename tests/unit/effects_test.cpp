@@ -1,5 +1,5 @@
 // The set of effects, and the directive that needs each.
-#include "core/effects.h"
+#include "core/device/effects.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The error that pixels predict from their own variance: against closed forms, and against pictures whose true error is known.
-#include "core/error_estimate.h"
+#include "core/render/error_estimate.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Diagnostics: how a scene's mistakes are reported, in the order in which a reader meets them.
-#include "core/error.h"
+#include "core/base/error.h"
 
 #include <gtest/gtest.h>
 

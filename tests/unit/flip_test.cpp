@@ -1,7 +1,7 @@
 // Our FLIP against the authors' (flip-evaluator; data/flip_expected.py made the numbers), and its properties.
 #include "core/image/flip.h"
 
-#include "core/error.h"
+#include "core/base/error.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -1,5 +1,5 @@
 // The cost of the next halving of the error, for histories whose law is known, and whether an estimate can be trusted.
-#include "core/forecast.h"
+#include "core/render/forecast.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // Images to files and back: the data that must survive do, and errors of reading or writing give a reason.
 #include "core/image/image_io.h"
 
-#include "core/error.h"
-#include "core/file.h"
+#include "core/base/error.h"
+#include "core/base/file.h"
 #include "core/image/pfm.h"
 #include "support/temporary_folder.h"
 

@@ -1,7 +1,7 @@
 // Images in memory: channels by name, crops, and the sRGB curve.
 #include "core/image/image.h"
 
-#include "core/error.h"
+#include "core/base/error.h"
 
 #include <gtest/gtest.h>
 

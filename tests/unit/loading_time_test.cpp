@@ -1,7 +1,7 @@
 // Loading time is proportional to the size of a scene, even if it repeats some statement many times. Ten times the statements
 // may take 25 times the processor time: data that no longer fit the caches cause up to 18, quadratic behaviour nearly 100. A
 // measurement that another program disturbs is repeated, so that a false alarm needs three wrong ones in a row.
-#include "core/device.h"
+#include "core/device/device.h"
 #include "support/build_text.h"
 #include "support/render.h"
 #include "support/temporary_folder.h"

@@ -1,7 +1,7 @@
 // The metrics against numbers worked out by hand from their formulas (docs/metrics.md).
 #include "core/image/metrics.h"
 
-#include "core/error.h"
+#include "core/base/error.h"
 
 #include <gtest/gtest.h>
 

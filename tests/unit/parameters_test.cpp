@@ -1,7 +1,7 @@
-#include "core/parameters.h"
+#include "core/base/parameters.h"
 
+#include "core/base/registry.h"
 #include "core/kernel/params.h"
-#include "core/registry.h"
 
 #include <gtest/gtest.h>
 

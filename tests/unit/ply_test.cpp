@@ -1,7 +1,7 @@
 // Reads PLY meshes of every format from memory, and reports errors in damaged ones.
 #include "core/scene/ply.h"
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "support/temporary_folder.h"
 
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
 // The library's front door: core/render/render.h.
 #include "core/render/render.h"
 
-#include "core/effects.h"
-#include "core/integrator.h"
-#include "integrators/sppm/sppm.params.h"
+#include "core/device/effects.h"
+#include "core/render/integrator.h"
+#include "integrators/photon_paths/progressive_params.h"
 #include "support/render.h"
 
 #include <gtest/gtest.h>
@@ -254,7 +254,7 @@ TEST(ErrorRateOf, EachIntegratorIsWhatTheorySays) {
         const IntegratorFactory& factory = integrators().require(name);
         const std::unique_ptr<Integrator> integrator = factory.create();
         set_defaults(integrator->parameters(), factory.fields);
-        if (name == "sppm" || name == "ppm") static_cast<SppmParams*>(integrator->parameters())->alpha = 0.25f;
+        if (name == "sppm" || name == "ppm") static_cast<ProgressiveParams*>(integrator->parameters())->alpha = 0.25f;
         EXPECT_EQ(integrator->error_rate().expected, expected.at(name).expected);
         EXPECT_EQ(integrator->error_rate().slowest, expected.at(name).slowest);
     }

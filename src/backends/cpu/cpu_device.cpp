@@ -1,10 +1,10 @@
 // The CPU backend: kernels as C++, oneTBB over indices, Embree (or the shaders' BVH2, built as C++) for rays.
 #include "backends/cpu/cpu_scene.h"
-#include "core/device.h"
-#include "core/device_choice.h"
-#include "core/error.h"
-#include "core/kernel_registry.h"
-#include "core/watch.h"
+#include "core/base/error.h"
+#include "core/base/watch.h"
+#include "core/device/device.h"
+#include "core/device/device_choice.h"
+#include "core/device/kernel_registry.h"
 
 #include <embree3/rtcore_config.h>
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "backends/cpu/cpu_scene.h"
 
-#include "backends/cpu/embree_scene.h"
-#include "core/bvh/bvh2.h"
+#include "accel/rays/bvh2.h"
+#include "accel/rays/embree_scene.h"
 
 namespace lampyris {
 

@@ -1,9 +1,9 @@
 // A scene as the CPU backend holds it: pointers into the host's arrays, and a ray tracer.
 #pragma once
 
-#include "core/device.h"
-#include "core/kernel_registry.h"
-#include "core/kernel_types.h"
+#include "core/device/device.h"
+#include "core/device/kernel_registry.h"
+#include "core/device/kernel_types.h"
 
 #include <array>
 #include <memory>

@@ -1,7 +1,7 @@
 #include "backends/vulkan/context.h"
 
-#include "core/device_choice.h"
-#include "core/error.h"
+#include "core/base/error.h"
+#include "core/device/device_choice.h"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 
 #include "backends/vulkan/validation.h"
 #include "backends/vulkan/vulkan.h"
-#include "core/device.h"
+#include "core/device/device.h"
 
 #include <memory>
 #include <string>

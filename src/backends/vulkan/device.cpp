@@ -2,9 +2,9 @@
 #include "backends/vulkan/boxes.h"
 #include "backends/vulkan/kernel.h"
 #include "backends/vulkan/scene.h"
-#include "core/error.h"
+#include "core/base/error.h"
+#include "core/base/watch.h"
 #include "core/scene/scene.h"
-#include "core/watch.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>

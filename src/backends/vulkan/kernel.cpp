@@ -1,6 +1,6 @@
 #include "backends/vulkan/kernel.h"
 
-#include "core/watch.h"
+#include "core/base/watch.h"
 
 #include <fmt/format.h>
 

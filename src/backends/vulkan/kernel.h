@@ -3,7 +3,7 @@
 
 #include "backends/vulkan/pipeline.h"
 #include "backends/vulkan/shader_compiler.h"
-#include "core/kernel_types.h"
+#include "core/device/kernel_types.h"
 
 #include <functional>
 #include <map>

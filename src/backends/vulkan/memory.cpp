@@ -1,7 +1,7 @@
 #include "backends/vulkan/memory.h"
 
 #include "backends/vulkan/addresses.h"
-#include "core/error.h"
+#include "core/base/error.h"
 
 #include <fmt/format.h>
 

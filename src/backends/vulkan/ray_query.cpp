@@ -1,7 +1,7 @@
 #include "backends/vulkan/ray_query.h"
 
-#include "backends/cpu/primitive_kernel.h"
-#include "core/error.h"
+#include "accel/rays/primitive_kernel.h"
+#include "core/base/error.h"
 #include "core/scene/scene.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "backends/vulkan/scene.h"
 
+#include "accel/rays/bvh2.h"
 #include "backends/vulkan/ray_query.h"
-#include "core/bvh/bvh2.h"
 
 #include <fmt/format.h>
 

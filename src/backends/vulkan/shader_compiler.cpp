@@ -1,7 +1,7 @@
 #include "backends/vulkan/shader_compiler.h"
 
-#include "core/error.h"
-#include "core/kernel_registry.h"
+#include "core/base/error.h"
+#include "core/device/kernel_registry.h"
 
 #include <fmt/format.h>
 #include <glslang/Public/ResourceLimits.h>

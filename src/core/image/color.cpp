@@ -1,6 +1,6 @@
 #include "core/image/color.h"
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/image/color_config.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "core/image/flip.h"
 
-#include "core/error.h"
+#include "core/base/error.h"
 
 #include <fmt/format.h>
 #include <glm/glm.hpp>

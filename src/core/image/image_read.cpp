@@ -1,9 +1,9 @@
 // Reads images: OpenImageIO for everything but PFM.
-#include "core/error.h"
+#include "core/base/error.h"
+#include "core/base/memory.h"
 #include "core/image/image_io.h"
 #include "core/image/pfm.h"
 #include "core/image/primaries.h"
-#include "core/memory.h"
 
 #include <fmt/format.h>
 #include <glm/glm.hpp>

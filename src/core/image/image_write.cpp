@@ -1,7 +1,7 @@
 // Writes images. Each is encoded in memory first, so that our own function writes the bytes, and can say why the disk refused
 // them.
-#include "core/error.h"
-#include "core/file.h"
+#include "core/base/error.h"
+#include "core/base/file.h"
 #include "core/image/image_io.h"
 #include "core/image/pfm.h"
 

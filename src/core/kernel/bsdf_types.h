@@ -31,7 +31,7 @@ struct Bsdf {
     uint max_depth;   // coats: most events of a random walk
     uint samples;     // coats: random walks per evaluation
     uint walk;        // coats: which walks; 0 unless the same two directions are asked about again and again
-    float inner;  // smooth clear coats over diffuse bases: inner reflectance (clear_coat.functions.h); else negative
+    float inner;      // smooth clear coats over diffuse bases: inner reflectance (clear_coat.h); else negative
 };
 
 // Nothing that scatters.

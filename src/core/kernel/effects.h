@@ -1,5 +1,5 @@
 // Every effect that a scene may call for, written once: kernels ask HAS(EFFECT_X), the host computes the set from the
-// scene description (core/effects.h), and what is not in the set is compiled out (Vulkan) or out of the variant (CPU).
+// scene description (core/device/effects.h), and what is not in the set is compiled out (Vulkan) or out of the variant (CPU).
 #ifndef LAMPYRIS_KERNEL_EFFECTS
 #define LAMPYRIS_KERNEL_EFFECTS
 
@@ -37,7 +37,7 @@ LAMPYRIS_EFFECTS(LAMPYRIS_EFFECT_CONSTANT)
 #define LAMPYRIS_OR_EFFECT(constant, bit, name, cost) | constant
 CONST EffectSet kAllEffects = EffectSet(0u) LAMPYRIS_EFFECTS(LAMPYRIS_OR_EFFECT);
 #undef LAMPYRIS_OR_EFFECT
-// Sets that C++ kernels are built for (KERNEL_CPU_VARIANTS): a scene runs on the smallest one that has all of its effects.
+// Sets that C++ kernels are built for (CPU_EFFECTS of lampyris_kernel): a scene runs on the smallest one that has all of its effects.
 CONST EffectSet kDiffuseEffects = EFFECT_SMOOTH_NORMALS | EFFECT_AREA_LIGHTS;
 CONST EffectSet kGlassEffects =
     kDiffuseEffects | EFFECT_QUADRICS | EFFECT_QUADRIC_LIGHTS | EFFECT_CONDUCTOR | EFFECT_DIELECTRIC | EFFECT_ROUGH;

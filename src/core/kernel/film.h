@@ -12,6 +12,11 @@ FN uvec2 film_pixel_of(uint index, IN(FilmWindow) window) {
     return uvec2(column, strip * 8u + rest - column * height);
 }
 
+// The numbers of a pixel are found by its place on the full film, so that a window's pixels are those of the whole image.
+FN uint film_pixel_number(uvec2 pixel, IN(FilmWindow) window) {
+    return (window.y + pixel.y) * scene[0].camera.resolution_x + window.x + pixel.x;
+}
+
 FN float compensated_add(float sum, float value, INOUT(float) low) {
     float next = sum + value;
     float of_value = next - sum;
@@ -103,7 +108,7 @@ FN CameraSample camera_sample(IN(FilmWindow) w, uvec2 pixel, uint i) {
     uint x = w.x + pixel.x;
     uint y = w.y + pixel.y;
     s.pass = w.first_sample + i;
-    s.numbers = sampler_begin(y * scene[0].camera.resolution_x + x, s.pass, w.seed, w.sampler_kind);
+    s.numbers = sampler_begin(film_pixel_number(pixel, w), s.pass, w.seed, w.sampler_kind);
     vec2 offset = pixel_filter_sample(sample_2d_at(s.numbers, 0u), s.weight);
     vec2 u_lens = vec2(0.5f);
     if (CALLED_FOR(EFFECT_DEPTH_OF_FIELD)) u_lens = sample_2d_at(s.numbers, 2u);

@@ -98,7 +98,7 @@ CONST uint MATERIAL_REMAP = 1u;  // roughness is remapped (alpha = sqrt(roughnes
 CONST uint MATERIAL_USES_REFLECTANCE = 2u;  // conductor: color0 is `reflectance`, from which eta = 1 and k follow
 CONST uint MATERIAL_REMAP_COAT = 4u;        // as MATERIAL_REMAP, for the interface's roughness
 CONST uint MATERIAL_ENERGY_COMPENSATION = 8u;
-CONST uint MATERIAL_EXACT_COAT = 16u;  // coats: unbiased weights where pbrt's are not (layered.functions.h)
+CONST uint MATERIAL_EXACT_COAT = 16u;  // coats: unbiased weights where pbrt's are not (layered.h)
 
 // A slot's value is its constant, or where its texture is not NONE, the texture.
 struct MaterialRecord {

@@ -21,7 +21,7 @@ FN float surface_alpha(uint geometry, IN(TextureContext) c) {
 }
 
 // A mix is no scattering function, but stands for one of its materials: nothing is asked of it but which.
-#include "materials/mix/mix.material.h"
+#include "materials/mix/mix_bsdf.h"
 
 // The texture of a slot, in the order of the record: color0..2, roughness u and v, thickness, the coat's roughness u and v.
 CONST uint MATERIAL_SLOTS = 8u;

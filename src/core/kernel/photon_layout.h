@@ -9,7 +9,7 @@ struct PhotonRecord {
     uvec4 flux;  // x: octahedral direction of flight; power in yzw (three floats' bits)
 };
 
-// Cells of a grid, hashed or not: see core/kernel/photon_grid.h. Made by the host (core/photon_grid.h).
+// Cells of a grid, hashed or not: see core/kernel/photon_grid.h. Made by the host (core/photons/photon_grid.h).
 struct PhotonGrid {
     vec4 origin;       // corner of cell (0, 0, 0); w: 1 / side of a cell
     uvec4 resolution;  // cells along x, y, z; w: seed of the hash

@@ -7,7 +7,7 @@
 #define LAMPYRIS_KERNEL_PRELUDE
 
 #ifdef __cplusplus
-// Spectrum (core/spectrum.h) has three values, or four in a kernel that defines SPECTRUM_OF_FOUR before it includes anything.
+// Spectrum (core/device/spectrum.h) has three values, or four in a kernel that defines SPECTRUM_OF_FOUR before it includes anything.
 #define SPECTRUM_TYPE(size) using Spectrum = SpectrumOf<size>;
 // Parameters of functions: IN for structs that are only read, OUT and INOUT for results. Pass vectors and scalars by value.
 #define IN(T) const T&
@@ -122,7 +122,7 @@ VecPair pair_of_words(u64vec4 w) { return VecPair(vec_of_words(w.xy), vec_of_wor
 
 // Kernels that touch memory at random handle BATCH items an invocation, so that the CPU can ask for all of their places
 // before it uses the first. The k-th item of an invocation lies where each kind of machine likes to read: next to the one before on a
-// CPU, next to the neighbouring invocation's on a GPU. The host runs batch_count(n) invocations (core/device.h); an item may
+// CPU, next to the neighbouring invocation's on a GPU. The host runs batch_count(n) invocations (core/device/device.h); an item may
 // lie beyond the last one.
 CONST uint BATCH = 16u;
 #ifdef __cplusplus

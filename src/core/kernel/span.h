@@ -1,5 +1,5 @@
 // Kernels that have to compute where they will touch memory handle SPAN batches an invocation: each is computed, and asked for, before
-// the one ahead of it is used, so that a CPU does not wait between. The host runs span_count(n) invocations (core/photon_map.h).
+// the one ahead of it is used, so that a CPU does not wait between. The host runs span_count(n) invocations (core/photons/photon_map.h).
 #ifndef LAMPYRIS_KERNEL_SPAN
 #define LAMPYRIS_KERNEL_SPAN
 

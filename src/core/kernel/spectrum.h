@@ -1,4 +1,4 @@
-// Functions of a Spectrum (core/spectrum.h). No other kernel file knows how many values it has, and what they mean.
+// Functions of a Spectrum (core/device/spectrum.h). No other kernel file knows how many values it has, and what they mean.
 #ifndef LAMPYRIS_KERNEL_SPECTRUM
 #define LAMPYRIS_KERNEL_SPECTRUM
 

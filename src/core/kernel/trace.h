@@ -2,13 +2,15 @@
 #ifndef LAMPYRIS_KERNEL_TRACE
 #define LAMPYRIS_KERNEL_TRACE
 
-#ifdef KERNEL_TRACER_any  // a kernel that reads the scene but traces no rays
+#ifdef KERNEL_TRACER_any  // C++ only: these are compiled where they are called, which is then an error
 FN bool trace_closest(vec3 origin, vec3 direction, float t_max, OUT(Hit) hit) {
-    REPORT_UNFINISHED();
+    static_assert(!kEffects && kEffects,
+                  "the kernel traces rays: give it TRACES_RAYS (lampyris_kernel, in its folder)");
     return false;
 }
 FN bool trace_occluded(vec3 origin, vec3 direction, float t_max) {
-    REPORT_UNFINISHED();
+    static_assert(!kEffects && kEffects,
+                  "the kernel traces rays: give it TRACES_RAYS (lampyris_kernel, in its folder)");
     return false;
 }
 #elif defined(KERNEL_TRACER_embree)

@@ -1,4 +1,4 @@
-// The tracer of Vulkan and of backend cpu-bvh2: walks the BVH2 that core/bvh built.
+// The tracer of Vulkan and of backend cpu-bvh2: walks the BVH2 that accel/rays/bvh2.h built.
 #ifndef LAMPYRIS_KERNEL_TRACE_BVH2
 #define LAMPYRIS_KERNEL_TRACE_BVH2
 

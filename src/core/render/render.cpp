@@ -1,9 +1,9 @@
 #include "core/render/render.h"
 
 #include "core/image/image_io.h"
-#include "core/integrator_choice.h"
+#include "core/render/integrator_choice.h"
+#include "core/render/statistics.h"
 #include "core/scene/limits.h"
-#include "core/statistics.h"
 
 #include <fmt/format.h>
 

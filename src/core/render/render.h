@@ -6,15 +6,15 @@
 //     request.limits.passes = 16;
 //     const RenderOutcome outcome = render(request);
 //
-// Nothing is printed. Failures are exceptions of core/error.h: an InputError with all errors of the scene or the request, or a
+// Nothing is printed. Failures are exceptions of core/base/error.h: an InputError with all errors of the scene or the request, or a
 // MachineError for what the machine cannot do.
 #pragma once
 
-#include "core/device.h"
+#include "core/base/watch.h"
+#include "core/device/device.h"
 #include "core/image/image.h"
 #include "core/render/run_record.h"
 #include "core/scene/load.h"
-#include "core/watch.h"
 
 #include <array>
 #include <cstdint>

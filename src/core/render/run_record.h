@@ -2,9 +2,9 @@
 // metadata.
 #pragma once
 
-#include "core/effects.h"
+#include "core/device/effects.h"
 #include "core/image/metrics.h"
-#include "core/render_session.h"
+#include "core/render/render_session.h"
 
 #include <array>
 #include <cstdint>

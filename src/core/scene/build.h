@@ -1,7 +1,7 @@
 // SceneDescription -> Scene + Effects: turns the directives into flat arrays that any device can use.
 #pragma once
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/scene/description.h"
 #include "core/scene/scene.h"
 

@@ -3,8 +3,8 @@
 // a folder in src/materials/.
 #pragma once
 
-#include "core/parameters.h"
-#include "core/registry.h"
+#include "core/base/parameters.h"
+#include "core/base/registry.h"
 #include "core/scene/build.h"
 #include "core/scene/spectrum.h"
 #include "core/scene/texture_builder.h"

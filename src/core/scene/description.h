@@ -5,7 +5,7 @@
 // every token and parameter keeps its location. Nothing here knows what a "diffuse" material is.
 #pragma once
 
-#include "core/error.h"
+#include "core/base/parameter_list.h"
 
 #include <glm/mat4x4.hpp>
 
@@ -14,83 +14,9 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 namespace lampyris {
-
-enum class ParameterType {
-    kBool,
-    kInteger,
-    kFloat,
-    kPoint2,
-    kVector2,
-    kPoint3,
-    kVector3,
-    kNormal,
-    kRgb,
-    kBlackbody,
-    kSpectrum,
-    kString,
-    kTexture
-};
-
-// One `"type name" [ values ]`. Numbers of integer parameters are ints; of bools, one byte each; everything numeric
-// else is float (a spectrum given as wavelength-value pairs too; a spectrum by name is strings).
-struct Parameter {
-    ParameterType type;
-    std::string name;
-    Location location;                      // of the "type name" string
-    Location value_location;                // of the first value
-    std::string_view color_space = "srgb";  // the colour space of rgb values: one of kColorSpaces
-    std::variant<std::vector<float>, std::vector<int32_t>, std::vector<uint8_t>, std::vector<std::string>> values;
-    mutable bool used = false;  // set by the getters; a parameter that no getter read is an error
-};
-
-const char* type_name(ParameterType type);  // "point3", ...
-inline constexpr std::array<std::string_view, 4> kColorSpaces{"srgb", "rec2020", "aces2065-1", "dci-p3"};
-
-// The parameters of one directive. Getters mark a parameter as used, and report a wrong type or count to Diagnostics (returning
-// the default). If the parameter exists with another type, the error names both types.
-class ParameterList {
- public:
-    std::vector<Parameter> parameters;
-    std::vector<std::string> malformed;  // names of parameters that could not be read, which was reported
-
-    const Parameter* find(std::string_view name) const;  // marks as used
-    const Parameter* find(std::string_view name, ParameterType type) const;
-    bool has(std::string_view name) const;  // does not mark
-
-    float get_float(std::string_view name, float default_value, Diagnostics& diagnostics) const;
-    int32_t get_int(std::string_view name, int32_t default_value, Diagnostics& diagnostics) const;
-    bool get_bool(std::string_view name, bool default_value, Diagnostics& diagnostics) const;
-    std::string get_string(std::string_view name, const std::string& default_value, Diagnostics& diagnostics) const;
-    // A string that must be one of `choices`.
-    std::string get_choice(std::string_view name, const std::string& default_value,
-                           const std::vector<std::string>& choices, Diagnostics& diagnostics) const;
-    // Fixed-size tuples: point2, vector3, rgb, ...; nothing when absent.
-    std::vector<float> get_floats(std::string_view name, ParameterType type, size_t count,
-                                  Diagnostics& diagnostics) const;
-    // The whole array of a parameter (P, N, uv, indices); empty when absent. Moves the storage out: large meshes are not copied.
-    std::vector<float> take_floats(std::string_view name, ParameterType type, Diagnostics& diagnostics);
-    std::vector<int32_t> take_ints(std::string_view name, Diagnostics& diagnostics);
-    // Adds the parameters that are missing here (Attribute's defaults). They count as used: a default may apply to some types
-    // only.
-    void add_defaults(const std::vector<Parameter>& defaults);
-    bool all_used() const;
-    // Every parameter that no getter read becomes an error, with the known names as a hint.
-    void report_unused(const std::string& of_what, const std::vector<std::string>& known,
-                       Diagnostics& diagnostics) const;
-};
-
-// A directive with a quoted type: Camera "perspective", Shape "sphere", ...
-struct Entity {
-    std::string type;
-    Location location;       // of the directive
-    Location type_location;  // of its type string
-    ParameterList parameters;
-    bool given() const { return location.known(); }
-};
 
 // Object/light/camera space to world, at the two ends of the shutter; equal unless ActiveTransform made them differ.
 struct AnimatedTransform {

@@ -5,7 +5,7 @@
 // whatever its wrap mode and filter.
 #pragma once
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/image/image.h"
 #include "core/scene/scene.h"
 

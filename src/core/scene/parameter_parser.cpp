@@ -9,22 +9,6 @@
 namespace lampyris {
 namespace {
 
-struct TypeInfo {
-    const char* name;
-    ParameterType type;
-    size_t tuple;  // numbers are allocated in multiples of this
-};
-
-constexpr TypeInfo kTypes[] = {
-    {"bool", ParameterType::kBool, 1},         {"integer", ParameterType::kInteger, 1},
-    {"float", ParameterType::kFloat, 1},       {"point2", ParameterType::kPoint2, 2},
-    {"vector2", ParameterType::kVector2, 2},   {"point3", ParameterType::kPoint3, 3},
-    {"vector3", ParameterType::kVector3, 3},   {"normal", ParameterType::kNormal, 3},
-    {"rgb", ParameterType::kRgb, 3},           {"blackbody", ParameterType::kBlackbody, 1},
-    {"spectrum", ParameterType::kSpectrum, 2}, {"string", ParameterType::kString, 1},
-    {"texture", ParameterType::kTexture, 1},
-};
-
 // Names from older versions or other formats: either accepted with a warning, or only suggested.
 struct Alias {
     std::string_view alias;
@@ -37,17 +21,15 @@ constexpr Alias kAliases[] = {
     {"normal3", "normal", false}, {"vec3", "vector3", false},  {"str", "string", false},
 };
 
-const TypeInfo* find_type(std::string_view name) {
-    for (const TypeInfo& info : kTypes)
+const ParameterTypeInfo* find_type(std::string_view name) {
+    for (const ParameterTypeInfo& info : kParameterTypes)
         if (name == info.name) return &info;
     return nullptr;
 }
 
-const TypeInfo& info_of(ParameterType type) { return kTypes[static_cast<size_t>(type)]; }
-
 std::vector<std::string> type_names() {
     std::vector<std::string> names;
-    for (const TypeInfo& info : kTypes) names.push_back(info.name);
+    for (const ParameterTypeInfo& info : kParameterTypes) names.push_back(info.name);
     return names;
 }
 
@@ -89,8 +71,6 @@ std::vector<T> hand_over(std::vector<T>& scratch) {
 }
 
 }  // namespace
-
-const char* type_name(ParameterType type) { return info_of(type).name; }
 
 void ParameterParser::parse(Tokenizer& tokenizer, std::string_view color_space, ParameterList& list) {
     std::vector<Parameter>& parameters = list.parameters;
@@ -145,7 +125,7 @@ bool ParameterParser::parse_declaration(Tokenizer& tokenizer, const Token& token
         return false;
     }
     parameter.name = words[1];
-    const TypeInfo* info = find_type(words[0]);
+    const ParameterTypeInfo* info = find_type(words[0]);
     if (!info) {
         for (const Alias& alias : kAliases) {
             if (words[0] != alias.alias) continue;
@@ -336,7 +316,7 @@ bool ParameterParser::parse_word(Tokenizer& tokenizer, const Token& token, Param
 
 bool ParameterParser::check_count(const Parameter& parameter) {
     const auto* floats = std::get_if<std::vector<float>>(&parameter.values);
-    const TypeInfo& info = info_of(parameter.type);
+    const ParameterTypeInfo& info = type_info(parameter.type);
     if (!floats) return true;
     if (floats->size() % info.tuple != 0) {
         diagnostics_->error(

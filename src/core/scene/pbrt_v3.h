@@ -1,7 +1,7 @@
 // Recognises scenes in the format of pbrt-v3 (and older), which looks much like pbrt-v4's and means other things.
 #pragma once
 
-#include "core/error.h"
+#include "core/base/error.h"
 
 #include <string>
 #include <string_view>

@@ -1,6 +1,6 @@
 #include "core/scene/ply.h"
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/scene/file_text.h"
 #include "core/scene/ply_body.h"
 

@@ -1,6 +1,6 @@
 #include "core/scene/ply_body.h"
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/scene/number.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "core/scene/ply_header.h"
 
-#include "core/error.h"
+#include "core/base/error.h"
 
 #include <algorithm>
 #include <charconv>

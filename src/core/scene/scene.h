@@ -1,8 +1,8 @@
 // The scene as flat arrays, ready for any backend, and the effects that it needs.
 #pragma once
 
-#include "core/effects.h"
-#include "core/kernel_types.h"
+#include "core/device/effects.h"
+#include "core/device/kernel_types.h"
 
 #include <cstdint>
 #include <string>

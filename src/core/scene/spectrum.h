@@ -5,9 +5,9 @@
 // reflectance of one is white. docs/decisions explains what this approximates.
 #pragma once
 
-#include "core/error.h"
+#include "core/base/error.h"
+#include "core/device/kernel_types.h"
 #include "core/scene/description.h"
-#include "core/kernel_types.h"
 
 #include <glm/vec3.hpp>
 

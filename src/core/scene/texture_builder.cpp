@@ -1,6 +1,6 @@
 #include "core/scene/texture_builder.h"
 
-#include "core/file.h"
+#include "core/base/file.h"
 #include "core/scene/builder.h"
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 // Both are built on first use: a texture that nothing uses costs nothing.
 #pragma once
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/scene/image_store.h"
 #include "core/scene/texture_plugin.h"
 

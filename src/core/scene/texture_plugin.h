@@ -2,8 +2,9 @@
 // registration.
 #pragma once
 
-#include "core/parameters.h"
-#include "core/registry.h"
+#include "core/base/parameters.h"
+#include "core/base/registry.h"
+#include "core/scene/description.h"
 #include "core/scene/image_store.h"
 #include "core/scene/scene.h"
 

@@ -1,7 +1,7 @@
 // A scene text as tokens: words, quoted strings and brackets, each with its place; comments and blanks are skipped.
 #pragma once
 
-#include "core/error.h"
+#include "core/base/error.h"
 
 #include <cstdint>
 #include <memory>

@@ -1,5 +1,5 @@
-#include "core/integrator.h"
-#include "integrators/ao/ao.params.h"
+#include "core/render/integrator.h"
+#include "integrators/ao/ao_params.h"
 
 namespace lampyris {
 namespace {

@@ -1,7 +1,7 @@
 // Ambient occlusion: the cosine-weighted share of the hemisphere, on the viewer's side, that a point sees.
 #include "core/kernel/radiance.h"
 
-#include "integrators/ao/ao.params.h"
+#include "integrators/ao/ao_params.h"
 
 BUFFER_RO(1, AoParams, params)
 

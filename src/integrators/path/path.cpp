@@ -1,5 +1,5 @@
-#include "core/integrator.h"
-#include "integrators/path/path.params.h"
+#include "core/render/integrator.h"
+#include "integrators/path/path_params.h"
 
 namespace lampyris {
 namespace {

@@ -1,11 +1,8 @@
 // Path tracing with next-event estimation, multiple importance sampling (Veach 1997, chapters 9 and 10) and Russian
 // roulette.
-// clang-format off
-#define KERNEL_CPU_VARIANTS kAllEffects, kTexturedEffects, kGlassEffects, kSkyEffects, kGlassEffects | EFFECT_LAYERED_COAT, kDiffuseEffects | EFFECT_QUADRICS, kDiffuseEffects | EFFECT_QUADRICS | EFFECT_DIELECTRIC, kDiffuseEffects | EFFECT_TEXTURES | EFFECT_IMAGES
-// clang-format on
 #include "core/kernel/radiance.h"
 
-#include "integrators/path/path.params.h"
+#include "integrators/path/path_params.h"
 
 BUFFER_RO(1, PathParams, params)
 

@@ -1,11 +1,10 @@
 // Photon mapping as Jensen (1996, 2001) has it: photons are traced once; passes of eye paths look them up, at their hit points or at
 // the ends of rays from there (final gathering).
-#include "core/error.h"
-#include "core/integrator.h"
-#include "integrators/photon_map/photon_map.params.h"
+#include "core/base/error.h"
+#include "core/render/integrator.h"
+#include "integrators/photon_map/photon_map_params.h"
 #include "integrators/photon_map/stored_photons.h"
-#include "integrators/sppm/photon_host.h"
-#include "integrators/sppm/sppm.params.h"
+#include "integrators/photon_paths/photon_host.h"
 
 #include <fmt/format.h>
 
@@ -32,7 +31,7 @@ constexpr uint64_t kSpecularEffects =
 // Points where photons are looked up, one a pixel: hit points of eye paths, or ends of gather rays.
 struct Lookups {
     Lookups(Device& device, uint32_t pixels)
-        : hits(device.create_buffer(pixels * sizeof(kernel::SppmHit), "hit points")),
+        : hits(device.create_buffer(pixels * sizeof(kernel::HitPointRecord), "hit points")),
           queries(device.create_buffer(pixels * sizeof(glm::vec4), "places of hit points")),
           gathered(device.create_buffer(pixels * sizeof(glm::vec4), "gathered flux")) {}
     BufferHandle hits, queries, gathered;
@@ -48,12 +47,12 @@ class PhotonMapRendering {
           hits_(device_, pixels_) {
         check();
         const uint64_t effects = session.scene.effects.mask();
-        eye_ = device_.compile(sppm_files::kEye, effects);
-        radius_ = device_.compile(sppm_files::kRadius, 0);
-        resolve_ = device_.compile(sppm_files::kResolve, effects);
+        eye_ = device_.compile(photon_files::kEye, effects);
+        radius_ = device_.compile(photon_files::kRadius, 0);
+        resolve_ = device_.compile(photon_files::kResolve, effects);
         window_ = device_.create_buffer(sizeof(kernel::FilmWindow), "film window");
-        pass_buffer_ = device_.create_buffer(sizeof(kernel::SppmPass), "pass");
-        counters_ = device_.create_buffer(sizeof(SppmCounters), "counters");
+        pass_buffer_ = device_.create_buffer(sizeof(kernel::PhotonPass), "pass");
+        counters_ = device_.create_buffer(sizeof(PhotonCounters), "counters");
         own_params_ = argument_buffer(device_, params_, "parameters");
         statistics_ = device_.create_buffer(pixels_ * sizeof(glm::vec2), "photon statistics");
         statistics_->fill_zero();  // nothing here reads them
@@ -62,17 +61,16 @@ class PhotonMapRendering {
         film_bias_ = device_.create_buffer(pixels_ * sizeof(kernel::FilmBias), "bias of the film");
         film_bias_->fill_zero();
         if (params.gather == 0) {
-            const uint32_t keep =
-                params.direct == kernel::SPPM_DIRECT_PHOTONS ? kernel::SPPM_KEEP_ALL : kernel::SPPM_KEEP_BOUNCED;
+            const uint32_t keep = params.direct == kernel::DIRECT_PHOTONS ? kernel::KEEP_ALL : kernel::KEEP_BOUNCED;
             map_.emplace(session, keep, uint32_t(params.photons), 0, consumer(hits_));
             return;
         }
         rays_ = device_.compile(kRays, effects);
         add_ = device_.compile(kAdd, 0);
         ends_.emplace(device_, pixels_);
-        map_.emplace(session, kernel::SPPM_KEEP_ALL, uint32_t(params.photons), 0, consumer(*ends_));
+        map_.emplace(session, kernel::KEEP_ALL, uint32_t(params.photons), 0, consumer(*ends_));
         if (effects & kSpecularEffects)
-            caustics_.emplace(session, kernel::SPPM_KEEP_CAUSTIC, caustic_paths(), 1, consumer(hits_));
+            caustics_.emplace(session, kernel::KEEP_CAUSTIC, caustic_paths(), 1, consumer(hits_));
     }
 
     void render() {
@@ -99,7 +97,7 @@ class PhotonMapRendering {
                 fmt::format("error: photons * (maxdepth + 1) = {} is more than 2^32; take fewer photons, or a smaller "
                             "maxdepth",
                             keys));
-        if (params_.gather > 0 && params_.direct == kernel::SPPM_DIRECT_PHOTONS)
+        if (params_.gather > 0 && params_.direct == kernel::DIRECT_PHOTONS)
             throw InputError(
                 "error: final gathering (gather above 0) finds direct light by sampling lights; direct=photons is for "
                 "the map shown directly");
@@ -120,7 +118,7 @@ class PhotonMapRendering {
     PhotonConsumer consumer(const Lookups& lookups) const {
         const bool nearest = params_.nearest > 0;
         const NamedBuffer third = nearest ? NamedBuffer{"photon_map", own_params_} : NamedBuffer{"biases", biases_};
-        return {nearest ? kNearest : sppm_files::kConsumer,
+        return {nearest ? kNearest : photon_files::kConsumer,
                 session_.scene.effects.mask(),
                 session_.device_scene.get(),
                 {{"hits", lookups.hits}, {"gathered", lookups.gathered}, third}};
@@ -137,32 +135,32 @@ class PhotonMapRendering {
         set_radii(float(2.0 * double(session_.scene.record.bounds.w) * std::sqrt(share)));
     }
 
-    // Those of the kernels, which are sppm's: of look-ups at the hit points, and in the map.
+    // Of look-ups at the hit points, and in the map.
     void set_radii(float radius) {
-        SppmParams sppm{};
-        sppm.radius = map_radius_ = radius;
-        sppm.maxdepth = params_.maxdepth;
-        sppm.rrdepth = params_.rrdepth;
-        sppm.minradius = params_.minradius;
-        sppm.alpha = 1.0f;
-        sppm.schedule = kernel::SPPM_MEMORYLESS;
-        sppm.direct = params_.direct;
-        sppm.glossy = params_.glossy;
-        map_params_ = argument_buffer(device_, sppm, "parameters");
-        if (params_.gather > 0 && params_.causticradius > 0.0f) sppm.radius = params_.causticradius;
-        hit_radius_ = sppm.radius;
-        hit_params_ = argument_buffer(device_, sppm, "parameters");
+        kernel::PhotonPathParams shared{};
+        shared.radius = map_radius_ = radius;
+        shared.maxdepth = params_.maxdepth;
+        shared.rrdepth = params_.rrdepth;
+        shared.minradius = params_.minradius;
+        shared.alpha = 1.0f;  // radii stay
+        shared.schedule = kernel::SCHEDULE_MEMORYLESS;
+        shared.direct = params_.direct;
+        shared.glossy = params_.glossy;
+        map_params_ = argument_buffer(device_, shared, "parameters");
+        if (params_.gather > 0 && params_.causticradius > 0.0f) shared.radius = params_.causticradius;
+        hit_radius_ = shared.radius;
+        hit_params_ = argument_buffer(device_, shared, "parameters");
     }
 
     void one_pass(uint64_t pass) {
-        kernel::SppmPass record{};
+        kernel::PhotonPass record{};
         record.number = uint32_t(pass);
         record.points = 1;
         record.squared_scale = 1.0f;
         record.branches = 1;
         pass_buffer_->upload(&record, sizeof record);
         set_window(uint32_t(pass));
-        run(sppm_files::kEye, *eye_, "eye_pass",
+        run(photon_files::kEye, *eye_, "eye_pass",
             {{"window", window_},
              {"params", hit_params_},
              {"film", session_.film.buffer()},
@@ -177,7 +175,7 @@ class PhotonMapRendering {
             for (uint32_t ray = 0; ray < gather_rays(); ++ray) one_gather_ray(pass, ray);
         }
         set_window(uint32_t(pass));
-        run(sppm_files::kResolve, *resolve_, "resolve",
+        run(photon_files::kResolve, *resolve_, "resolve",
             {{"window", window_},
              {"params", hit_params_},
              {"film", session_.film.buffer()},
@@ -218,7 +216,7 @@ class PhotonMapRendering {
 
     // Also clears what was gathered.
     void give_radii(const Lookups& lookups, const BufferHandle& parameters, const char* phase) {
-        run(sppm_files::kRadius, *radius_, phase,
+        run(photon_files::kRadius, *radius_, phase,
             {{"params", parameters},
              {"passes", pass_buffer_},
              {"hits", lookups.hits},

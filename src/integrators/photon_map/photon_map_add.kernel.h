@@ -3,14 +3,14 @@
 #include "core/kernel/layout.h"
 #include "core/kernel/math.h"
 #include "core/kernel/photon.h"
-#include "integrators/photon_map/photon_map.params.h"
-#include "integrators/sppm/sppm.layout.h"
+#include "integrators/photon_map/photon_map_params.h"
+#include "integrators/photon_paths/photon_paths_layout.h"
 
 BUFFER_RO(0, PhotonMapParams, params)
-BUFFER_RO(1, SppmHit, ends)
+BUFFER_RO(1, HitPointRecord, ends)
 BUFFER_RO(2, vec4, queries)
 BUFFER_RO(3, vec4, gathered)
-BUFFER_RW(4, SppmHit, hits)
+BUFFER_RW(4, HitPointRecord, hits)
 
 KERNEL(photon_map_add) {
     float radius = queries[index].w;

@@ -1,14 +1,14 @@
-// What a hit point makes of the photons nearest to it: as sppm.consumer.h of all in range, scaled as if the whole radius were as
+// What a hit point makes of the photons nearest to it: as hit_flux.consumer.h of all in range, scaled as if the whole radius were as
 // densely filled.
 #include "core/kernel/scene.h"
 
 #define GATHER_SHRINKS
 #include "core/kernel/gather.h"
 #include "core/kernel/nearest.h"
-#include "integrators/photon_map/photon_map.params.h"
-#include "integrators/sppm/hit_point.functions.h"
+#include "integrators/photon_map/photon_map_params.h"
+#include "integrators/photon_paths/hit_point.h"
 
-BUFFER_RO(16, SppmHit, hits)
+BUFFER_RO(16, HitPointRecord, hits)
 BUFFER_RW(17, vec4, gathered)
 BUFFER_RO(18, PhotonMapParams, photon_map)
 

@@ -1,7 +1,7 @@
 #include "integrators/photon_map/stored_photons.h"
 
-#include "core/error.h"
-#include "integrators/sppm/photon_host.h"
+#include "core/base/error.h"
+#include "integrators/photon_paths/photon_host.h"
 
 #include <fmt/format.h>
 #include <glm/glm.hpp>
@@ -16,7 +16,7 @@ StoredPhotons::StoredPhotons(RenderSession& session, uint32_t keep, uint32_t pat
                              const PhotonConsumer& consumer)
     : session_(session),
       paths_(paths),
-      kernel_(session.device.compile(sppm_files::kPhotons, session.scene.effects.mask())),
+      kernel_(session.device.compile(photon_files::kPhotons, session.scene.effects.mask())),
       map_(create_photon_map(session.photon_map)),
       consumer_(consumer) {
     map_->open(session.device);
@@ -39,7 +39,7 @@ StoredPhotons::StoredPhotons(RenderSession& session, uint32_t keep, uint32_t pat
 // of its number and the seed, so that they are as many.
 void StoredPhotons::trace(const BufferHandle& parameters) {
     const BufferHandle arguments = session_.device.create_buffer(sizeof pass_, "pass");
-    const BufferHandle counters = session_.device.create_buffer(sizeof(SppmCounters), "counters");
+    const BufferHandle counters = session_.device.create_buffer(sizeof(PhotonCounters), "counters");
     uint64_t capacity = std::min<uint64_t>(std::max<uint64_t>(4 * uint64_t(paths_), 65536), 1u << 30);
     for (;;) {
         store_.reset();
@@ -47,13 +47,13 @@ void StoredPhotons::trace(const BufferHandle& parameters) {
         pass_.capacity = uint32_t(capacity);
         arguments->upload(&pass_, sizeof pass_);
         counters->fill_zero();
-        run_in_phase(session_, sppm_files::kPhotons, *kernel_, "photon_tracing",
+        run_in_phase(session_, photon_files::kPhotons, *kernel_, "photon_tracing",
                      {{"passes", arguments}, {"params", parameters}, {"photons", store_}, {"counters", counters}},
                      paths_);
-        const SppmCounters found = download_sppm_counters(*counters);
-        stored_ = found[kernel::SPPM_STORED];
-        session_.photons.rays += found[kernel::SPPM_RAYS];
-        if (const uint32_t most = found[kernel::SPPM_MOST_KEPT]; !keys_reach(paths_, most))
+        const PhotonCounters found = download_photon_counters(*counters);
+        stored_ = found[kernel::PHOTONS_STORED];
+        session_.photons.rays += found[kernel::PHOTON_RAYS];
+        if (const uint32_t most = found[kernel::PHOTONS_MOST_KEPT]; !keys_reach(paths_, most))
             throw InputError(fmt::format(
                 "error: a path leaves {} photons at masked surfaces and others, and {} times as many as there "
                 "are paths ({}) is more than 2^32; take fewer photons",

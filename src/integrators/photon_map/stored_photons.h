@@ -1,9 +1,9 @@
 // Photons that are traced once and stay, with the structure that looks them up.
 #pragma once
 
-#include "core/photon_map.h"
-#include "core/render_session.h"
-#include "integrators/sppm/sppm_host.h"
+#include "core/photons/photon_map.h"
+#include "core/render/render_session.h"
+#include "integrators/photon_paths/photon_paths_host.h"
 
 #include <memory>
 
@@ -15,7 +15,7 @@ class StoredPhotons {
     StoredPhotons(RenderSession& session, uint32_t keep, uint32_t paths, uint32_t stream,
                   const PhotonConsumer& consumer);
 
-    // Traces the paths, once. `parameters`: kernel SppmParams, of sppm's kernels. Throws InputError where keys do not reach.
+    // Traces the paths, once. `parameters`: kernel::PhotonPathParams. Throws InputError where keys do not reach.
     void trace(const BufferHandle& parameters);
 
     // Hands the consumer what `count` queries find, none with a radius above `radius`. Builds the structure where it is not built or
@@ -32,7 +32,7 @@ class StoredPhotons {
 
     RenderSession& session_;
     const uint32_t paths_;
-    kernel::SppmPass pass_{};
+    kernel::PhotonPass pass_{};
     KernelHandle kernel_;
     BufferHandle store_;
     uint32_t stored_ = 0;

@@ -1,4 +1,4 @@
-#include "integrators/sppm/photon_mapping.h"
+#include "integrators/photon_paths/progressive.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@ namespace {
 
 class Ppm : public Integrator {
  public:
-    SppmParams params;
+    ProgressiveParams params;
     bool uses_photon_map() const override { return true; }
     ErrorRate error_rate() const override { return ErrorRate::of_photons(double(params.alpha)); }
     bool fixes_eye_samples() const override { return true; }
@@ -22,11 +22,11 @@ class Ppm : public Integrator {
             eye_samples > 1 ? fmt::format("{} eye samples", eye_samples) : "one eye sample");
     }
     void render(RenderSession& session) override {
-        render_photon_mapping(session, params, std::max(session.eye_samples, 1u));
+        render_progressive(session, params, std::max(session.eye_samples, 1u));
     }
 };
 
-REGISTER_INTEGRATOR(Ppm, SPPM_PARAMS, "ppm",
+REGISTER_INTEGRATOR(Ppm, PROGRESSIVE_PARAMS, "ppm",
                     "Progressive photon mapping: hit points that stay where the first pass put them.")
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace lampyris {
 
 namespace {
 
-// Less than MIX_DEPTH (mix.material.h), which is how many kernels look at.
+// Less than MIX_DEPTH (mix_bsdf.h), which is how many kernels look at.
 constexpr uint32_t kMostMixes = 63;
 
 // How many mixes a look-up passes from a material on.

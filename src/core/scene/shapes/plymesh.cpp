@@ -1,5 +1,5 @@
 // Shape "plymesh": a mesh from a PLY file.
-#include "core/file.h"
+#include "core/base/file.h"
 #include "core/scene/ply.h"
 #include "core/scene/shapes/mesh.h"
 

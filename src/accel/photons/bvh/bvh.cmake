@@ -1,0 +1,1 @@
+lampyris_kernel(bvh_ray_query.gather.h GLSL_ONLY)

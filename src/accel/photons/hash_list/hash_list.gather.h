@@ -1,0 +1,2 @@
+// Chains are walked as those that were linked in parallel.
+#include "accel/photons/linked_list/linked_list.gather.h"

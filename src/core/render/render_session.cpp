@@ -1,0 +1,94 @@
+#include "core/render/render_session.h"
+
+#include "core/base/watch.h"
+#include "core/render/sample_slices.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace lampyris {
+namespace {
+
+constexpr double kLookSeconds = 2.0;
+
+}  // namespace
+
+RenderSession::RenderSession(Device& device_, const Scene& scene_, DeviceSceneHandle device_scene_, Film& film_,
+                             BudgetLimits limits)
+    : device(device_), scene(scene_), device_scene(std::move(device_scene_)), film(film_), limits_(limits) {
+    progress_.estimated_error = std::numeric_limits<double>::quiet_NaN();
+    progress_.forecast = forecast_halving({}, error_rate);
+}
+
+kernel::FilmWindow RenderSession::window(uint32_t first, uint32_t samples) const {
+    const glm::uvec4 pixels = film.window();
+    return {pixels.x, pixels.y, pixels.z, pixels.w, first, samples, seed, sampler};
+}
+
+uint32_t RenderSession::next_passes() {
+    if (current_watch().interrupted()) interrupted_ = true;
+    if (interrupted_ || progress_.finished) return 0;
+    uint64_t count = 1;
+    if (seconds_per_pass_ > 0.0)
+        count = uint64_t(std::clamp(SampleSlices::kSliceSeconds / seconds_per_pass_, 1.0, 1048576.0));
+    // At most twice as many as before: the first slices are short, and show how long a pass takes.
+    count = std::min(count, std::max<uint64_t>(1, progress_.passes));
+    if (limits_.seconds && seconds_per_pass_ > 0.0) {
+        const double left = *limits_.seconds - progress_.wall_s;
+        count = std::min(count, uint64_t(std::max(1.0, std::floor(left / seconds_per_pass_))));
+    }
+    const uint64_t next_power = std::bit_ceil(progress_.passes + 1);
+    count = std::min(count, next_power - progress_.passes);
+    if (max_slice > 0) count = std::min<uint64_t>(count, max_slice);
+    if (limits_.passes) count = std::min(count, *limits_.passes - progress_.passes);
+    if (count == 0) return 0;
+    slice_start_ = Clock::now();
+    return uint32_t(count);
+}
+
+void RenderSession::passes_finished(uint32_t count) {
+    const double seconds = std::chrono::duration<double>(Clock::now() - slice_start_).count();
+    progress_.passes += count;
+    progress_.wall_s += seconds;
+    seconds_per_pass_ = seconds / count;
+    if (limits_.passes && progress_.passes >= *limits_.passes) progress_.finished = true;
+    // The next pass must fit, or the limit would be exceeded by half a pass on average.
+    if (limits_.seconds && progress_.wall_s + 0.5 * seconds_per_pass_ >= *limits_.seconds) progress_.finished = true;
+    if (current_watch().interrupted()) interrupted_ = true;
+    const bool look = progress_.finished || interrupted_ || std::has_single_bit(progress_.passes) ||
+                      progress_.wall_s - last_look_s_ >= kLookSeconds;
+    if (!look) return;
+    last_look_s_ = progress_.wall_s;
+    film.download();
+    const FilmSummary summary = film.summary();
+    progress_.estimated_error = summary.estimated_relmse;
+    history_.push_back({progress_.passes, progress_.wall_s, summary.estimated_relmse});
+    progress_.forecast = forecast_halving(history_, error_rate);
+    progress_.unstable = why_unstable(summary.health, history_, error_rate);
+    if (!unseen_error.empty()) progress_.unstable = unseen_error;
+    progress_.rays = summary.rays;
+    progress_.samples = summary.samples;
+    progress_.target = compare_with_target(summary);
+    if (progress_.target == TargetState::kReached) progress_.finished = true;
+    if (on_progress) on_progress(progress_, film);
+}
+
+RenderEnd RenderSession::ended() const {
+    if (interrupted_) return RenderEnd::kInterrupted;
+    if (progress_.target == TargetState::kReached) return RenderEnd::kTargetError;
+    return limits_.passes && progress_.passes >= *limits_.passes ? RenderEnd::kPasses : RenderEnd::kTime;
+}
+
+TargetState RenderSession::compare_with_target(const FilmSummary& summary) const {
+    if (!limits_.target_error) return TargetState::kNone;
+    // Even with accept_unstable the first estimate is not used: the picture may still be black.
+    if (summary.min_samples < kTrustedSamples) return TargetState::kAbove;
+    if (std::isnan(summary.estimated_relmse)) return TargetState::kUnknown;
+    if (summary.estimated_relmse > *limits_.target_error) return TargetState::kAbove;
+    if (!progress_.unstable.empty() && !limits_.accept_unstable) return TargetState::kBelowButUnstable;
+    return TargetState::kReached;
+}
+
+}  // namespace lampyris

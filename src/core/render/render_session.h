@@ -1,0 +1,109 @@
+// What an integrator's render() works with: device, scene, film, and a budget of passes.
+#pragma once
+
+#include "core/device/device.h"
+#include "core/render/film.h"
+#include "core/render/forecast.h"
+#include "core/scene/scene.h"
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lampyris {
+
+// The first limit reached stops the rendering.
+struct BudgetLimits {
+    std::optional<uint64_t> passes;
+    std::optional<double> seconds;
+    std::optional<double> target_error;  // estimated relMSE
+    bool accept_unstable = false;        // the target also counts as reached if the estimate cannot be trusted
+};
+
+// Why a rendering ended: by which limit, or because it was interrupted (core/base/watch.h).
+enum class RenderEnd { kPasses, kTime, kTargetError, kInterrupted };
+
+enum class TargetState { kNone, kAbove, kUnknown, kBelowButUnstable, kReached };
+
+// The state of a rendering after some passes; what progress displays and statistics see.
+struct RenderProgress {
+    uint64_t passes = 0;
+    double wall_s = 0.0;           // time spent rendering: without set-up, and without evaluating the film
+    double estimated_error = 0.0;  // estimated relMSE; NaN if not known yet
+    ErrorForecast forecast{};      // time until it has halved
+    std::string unstable;          // why the estimate cannot be trusted; empty if nothing speaks against it
+    uint64_t rays = 0, samples = 0;
+    TargetState target = TargetState::kNone;  // the estimate compared with BudgetLimits::target_error
+    bool finished = false;
+};
+
+// Results of photon mapping, for the statistics.
+struct PhotonStatistics {
+    uint64_t emitted = 0, stored = 0, lost = 0, rays = 0;
+    double radius_initial = 0.0, radius_min = 0.0, radius_mean = 0.0,
+           radius_max = 0.0;        // of the last pass, in scene units
+    double bucket_load_mean = 0.0;  // 0: there are no buckets
+    uint32_t bucket_load_max = 0;
+    size_t map_bytes = 0;
+    std::vector<std::pair<std::string, std::string>> map_parameters;
+};
+
+class RenderSession {
+ public:
+    RenderSession(Device& device, const Scene& scene, DeviceSceneHandle device_scene, Film& film, BudgetLimits limits);
+
+    Device& device;
+    const Scene& scene;
+    const DeviceSceneHandle device_scene;
+    Film& film;
+    uint32_t seed = 0;
+    uint32_t sampler = 0;      // kernel::SAMPLER_*
+    uint32_t max_slice = 0;    // maximum of passes in a slice; 0: no limit
+    uint32_t eye_samples = 1;  // per pixel, for integrators that fix them
+    std::string photon_map;    // NAME[:key=value,...]; for integrators that use one
+    PhotonStatistics photons;
+    ErrorRate error_rate = ErrorRate::of_samples();  // the integrator's convergence rate in theory
+    std::string unseen_error;  // an error that the variance between passes cannot show; makes the estimate unstable
+
+    // How many passes to run next, starting with number next_pass(): 0 when the budget is spent or the rendering is
+    // interrupted. Slices last a fraction of a second (unless one pass takes longer), and end at powers of two.
+    uint32_t next_passes();
+    // To be called after each slice.
+    void passes_finished(uint32_t count);
+    // The number of the next pass. It counts from 0, or from `first` (for replaying one pass alone).
+    uint64_t next_pass() const { return first_pass_ + progress_.passes; }
+    void start_at(uint64_t first) { first_pass_ = first; }
+    // The film's part of the image, and `samples` samples starting at `first`, for kernels.
+    kernel::FilmWindow window(uint32_t first, uint32_t samples) const;
+    const RenderProgress& progress() const { return progress_; }
+    RenderEnd ended() const;
+    // To be called if a pass threw Cancelled: the film's contents count, the pass does not.
+    void pass_was_cancelled() { interrupted_ = true; }
+
+    // Seconds of a phase ("eye_pass", "photon_tracing", ...).
+    void add_phase(const std::string& name, double seconds) { phases_[name] += seconds; }
+    const std::map<std::string, double>& phases() const { return phases_; }
+
+    // Called with the film downloaded after a slice that ends at a power of two, after the last one, and at least every two
+    // seconds.
+    std::function<void(const RenderProgress&, const Film&)> on_progress;
+
+ private:
+    using Clock = std::chrono::steady_clock;
+    TargetState compare_with_target(const FilmSummary& summary) const;
+    BudgetLimits limits_;
+    RenderProgress progress_;
+    std::vector<ErrorPoint> history_;  // one point per evaluation of the film
+    std::map<std::string, double> phases_;
+    Clock::time_point slice_start_{};
+    uint64_t first_pass_ = 0;
+    double seconds_per_pass_ = 0.0;
+    double last_look_s_ = 0.0;
+    bool interrupted_ = false;
+};
+
+}  // namespace lampyris

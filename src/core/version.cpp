@@ -1,7 +1,0 @@
-#include "core/version.h"
-
-namespace lampyris {
-
-const char* version() { return LAMPYRIS_VERSION; }
-
-}  // namespace lampyris

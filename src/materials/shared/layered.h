@@ -1,0 +1,244 @@
+// Coats: a dielectric interface over a diffuse or metallic base, with an optional scattering medium between, by a random
+// walk through the layers at every evaluation (pbrt, 4th edition, section 14.3; Guo et al. 2018, "Position-Free Monte
+// Carlo Simulation for Arbitrary Layered BSDFs"). Values are unbiased estimates (up to max_depth) that are functions of
+// the two directions: their random numbers are keyed by the directions' bits. Densities are pbrt's approximations.
+//
+// Both sides show the coat (pbrt's twoSided): everything is turned so that wo.z > 0. The coat's interface is at height
+// `thickness`, the base at 0; the medium's extinction is 1. The base transmits nothing.
+#ifndef LAMPYRIS_MATERIALS_LAYERED
+#define LAMPYRIS_MATERIALS_LAYERED
+
+#include "materials/conductor/conductor_bsdf.h"
+#include "materials/dielectric/dielectric_bsdf.h"
+#include "materials/diffuse/diffuse_bsdf.h"
+
+// ---- The base --------------------------------------------------------------------------------------------------------
+
+FN bool base_is_specular(IN(Bsdf) b) { return b.kind == MATERIAL_COATEDCONDUCTOR && ggx_is_smooth(b.alpha_base); }
+
+FN Spectrum base_eval(IN(Bsdf) b, vec3 wo, vec3 wi, OUT(float) pdf) {
+    if (b.kind == MATERIAL_COATEDDIFFUSE) return diffuse_lobe_eval(b.color0, wo, wi, pdf);
+    return conductor_lobe_eval(b.color0, b.color1, b.alpha_base, b.flags, wo, wi, pdf);
+}
+
+FN bool base_sample(IN(Bsdf) b, vec3 wo, vec2 u, INOUT(BsdfSample) s) {
+    if (b.kind == MATERIAL_COATEDDIFFUSE) return diffuse_lobe_sample(b.color0, wo, u, s);
+    return conductor_lobe_sample(b.color0, b.color1, b.alpha_base, b.flags, wo, u, s);
+}
+
+// ---- Small things ----------------------------------------------------------------------------------------------------
+
+// Zeros of either sign are the same direction.
+FN uint hash_direction(vec3 w) {
+    uint x = w.x == 0.0f ? 0u : floatBitsToUint(w.x);
+    uint y = w.y == 0.0f ? 0u : floatBitsToUint(w.y);
+    return hash_combine(hash_combine(x, y), floatBitsToUint(w.z));
+}
+FN vec2 rng_float2(INOUT(Rng) rng) {
+    float x = rng_float(rng);
+    float y = rng_float(rng);
+    return vec2(x, y);
+}
+
+// Share that crosses the height dz of the medium unscattered along w.
+FN float layer_transmittance(float dz, vec3 w) { return exp_of(-min(abs(dz) / max(abs(w.z), MIN_COSINE), 100.0f)); }
+
+// How far along w the walk is from height z when the medium scatters it: false if it reaches a boundary, at height z then.
+FN bool layer_advance(IN(Bsdf) b, bool has_medium, vec3 w, INOUT(float) z, INOUT(Spectrum) weight, INOUT(Rng) rng) {
+    float target = w.z > 0.0f ? b.thickness : 0.0f;
+    if (!has_medium) {
+        weight = weight * layer_transmittance(b.thickness, w);
+        z = target;
+        return false;
+    }
+    float dz = sample_exponential(rng_float(rng), 1.0f) * abs(w.z);
+    float next = w.z > 0.0f ? z + dz : z - dz;
+    bool scattered = next > 0.0f && next < b.thickness;
+    z = scattered ? next : target;
+    return scattered;
+}
+
+// ---- The walk --------------------------------------------------------------------------------------------------------
+
+// What is asked of a coat. LAYERED_SAMPLE: a direction, by a walk that chooses at every event. The walk's weight so far goes into f,
+// and the last event's density is the pdf: their quotient is unbiased, each alone is not a value or density of the whole.
+// LAYERED_VALUE: f(wo, wi), by walks from wo (refracted in) that are joined to wi at every event.
+// LAYERED_DENSITY: that of wi, or of the sampled direction where one is asked for, too: as if light left after at most one reflection
+// at the base, estimated by one sample of each direction inside, mixed with a tenth of the uniform density for all else (pbrt,
+// 4th edition, section 14.3.4).
+CONST uint LAYERED_SAMPLE = 1u;
+CONST uint LAYERED_VALUE = 2u;
+CONST uint LAYERED_DENSITY = 4u;
+
+// All of `jobs` by one loop, in which each function of the interface and of the base is called once: GLSL compilers inline every call,
+// and with a walk for each job a kernel took minutes to compile. The first steps of a walk refract wo in, and wi, if there is one.
+//
+// Where light leaves the coat, the density for weighing w against wis, which was sampled by refracting in from wi, is that of the
+// latter if MATERIAL_EXACT_COAT. pbrt takes the density of choosing wi from inside, so that the two weights do not sum to 1, and a
+// rough coat's values come out too bright: 8 % over a white diffuse base at alpha = 0.3. Images can only agree with pbrt's by doing
+// the same, so this is the default. (f is reciprocal between the transport modes: one evaluation serves either way.)
+RARE_FN bool layered_scatter(IN(Bsdf) b, vec3 wo_any, vec3 wi_any, float uc, vec2 u, uint transport, uint jobs,
+                             INOUT(BsdfSample) s, OUT(Spectrum) value, OUT(float) density) {
+    value = Spectrum(0.0f);
+    density = 0.0f;
+    bool below = wo_any.z < 0.0f;
+    vec3 wo = below ? -wo_any : wo_any;
+    vec3 wi = below ? -wi_any : wi_any;
+    if (is_grazing(wo)) return false;
+    bool coat_specular = dielectric_lobe_is_specular(b.alpha, b.eta);
+    bool base_specular = base_is_specular(b);
+    bool has_medium = !is_black(b.albedo);
+    bool found = false;
+    for (uint job = LAYERED_SAMPLE; job <= LAYERED_DENSITY; job += job) {
+        if ((jobs & job) == 0u) continue;
+        // Jobs that are not asked for are known when a kernel is compiled, and their code is left out.
+        bool sampling = (jobs & LAYERED_SAMPLE) != 0u && job == LAYERED_SAMPLE;
+        bool valuing = (jobs & LAYERED_VALUE) != 0u && job == LAYERED_VALUE;
+        bool weighing = (jobs & LAYERED_DENSITY) != 0u && job == LAYERED_DENSITY;
+        if (weighing && (jobs & LAYERED_SAMPLE) != 0u) {
+            if (!found) break;
+            wi = below ? -s.wi : s.wi;
+        }
+        if (!sampling && !(wi.z >= MIN_COSINE)) continue;
+        uint hash_o = hash_direction(wo) + (valuing ? b.walk : 0u);
+        uint hash_i = hash_direction(sampling ? vec3(uc, u.x, u.y) : wi);
+        Rng rng = rng_begin(weighing ? hash_i : hash_o, weighing ? hash_o : hash_i);
+        uint entries = sampling ? 1u : 2u;
+        uint steps = entries + (weighing ? 1u : b.max_depth);
+        uint walks = sampling ? 1u : b.samples;
+        Spectrum surface = Spectrum(0.0f);  // what the coat itself reflects; a density is the same number three times
+        Spectrum sum = Spectrum(0.0f);
+        for (uint walk = 0u; walk < walks; ++walk) {
+            Spectrum beta = Spectrum(1.0f);
+            vec3 w = wo;
+            float z = b.thickness;
+            bool specular = true;
+            bool entered = true;
+            vec3 exit_w = wi;  // wi, refracted in
+            Spectrum exit_weight = Spectrum(0.0f);
+            float exit_pdf = 0.0f;
+            for (uint step = 0u; step < steps; ++step) {
+                bool entering = step < entries;
+                bool at_coat = entering;
+                bool scattered = false;
+                if (!entering && !weighing) {
+                    float largest = max_value(beta);
+                    if (step - entries > 3u && largest < 0.25f) {
+                        if (!(rng_float(rng) < largest)) break;
+                        beta = beta / largest;
+                    }
+                    scattered = layer_advance(b, has_medium, w, z, beta, rng);
+                    at_coat = !scattered && z > 0.0f;
+                }
+                // At the base, or in the medium at height z: light arrives along exit_w, if this event can scatter it there ...
+                float event_pdf = 0.0f;
+                float arrived = 0.0f;
+                if (!at_coat && !sampling) {
+                    Spectrum reflected = Spectrum(0.0f);
+                    if (scattered) {
+                        event_pdf = henyey_greenstein(-dot3(w, -exit_w), b.g);
+                        reflected = b.albedo * event_pdf;
+                    } else if (!base_specular) {
+                        reflected = base_eval(b, -w, -exit_w, event_pdf) * abs(exit_w.z);
+                    }
+                    float share = coat_specular ? 1.0f : power_heuristic(exit_pdf, event_pdf);
+                    arrived = share * event_pdf;
+                    if (valuing) {
+                        float reached = share * layer_transmittance(b.thickness - z, exit_w);
+                        sum = sum + beta * reflected * exit_weight * reached;
+                    }
+                    if (weighing && coat_specular) {
+                        sum = sum + Spectrum(arrived);
+                        break;
+                    }
+                }
+                // ... and the walk goes on in a direction chosen by the event.
+                BsdfSample event = no_bsdf_sample();
+                bool goes_on = true;
+                if (at_coat) {
+                    // Of the inner side only the reflection goes on, unless sampling: leaving is accounted for where the direction
+                    // was chosen.
+                    float uc_event = uc;
+                    vec2 u_event = u;
+                    if (!sampling || !entering) {
+                        uc_event = rng_float(rng);
+                        u_event = rng_float2(rng);
+                    }
+                    vec3 from = !entering ? -w : (step == 0u ? wo : wi);
+                    uint lobes = sampling ? LOBE_BOTH_SIDES : (entering ? LOBE_TRANSMISSION : LOBE_REFLECTION);
+                    uint flow = entering && step == 1u ? 1u - transport : transport;
+                    goes_on = dielectric_lobe_sample(b.alpha, b.eta, from, uc_event, u_event, flow, lobes, event);
+                } else {
+                    vec2 u_event = rng_float2(rng);
+                    if (scattered) {
+                        event.wi = sample_henyey_greenstein(-w, b.g, u_event);
+                        if (!sampling) event_pdf = henyey_greenstein(-dot3(w, event.wi), b.g);
+                        goes_on = !is_grazing(event.wi);
+                        event.lobe = LOBE_REFLECTION | LOBE_GLOSSY;
+                    } else {
+                        goes_on = base_sample(b, -w, u_event, event);
+                        event_pdf = event.pdf;
+                    }
+                }
+                entered = entered && goes_on;
+                if (sampling) {
+                    if (!goes_on || (!scattered && !entering && (!(event.pdf > 0.0f) || is_black(event.f)))) break;
+                    specular = specular && (event.lobe & LOBE_SPECULAR) != 0u;
+                    bool transmitted = (event.lobe & LOBE_TRANSMISSION) != 0u;
+                    if (transmitted != entering) {
+                        s.wi = below ? -event.wi : event.wi;
+                        s.f = beta * event.f;
+                        s.pdf = event.pdf;
+                        s.lobe = LOBE_REFLECTION | (specular ? LOBE_SPECULAR : LOBE_GLOSSY);
+                        s.pdf_is_proportional = 1u;
+                        found = true;
+                        break;
+                    }
+                } else if (!entering && !goes_on) {
+                    break;
+                }
+                if (scattered) {
+                    beta = beta * b.albedo;
+                    w = event.wi;
+                } else if (step == 1u && !sampling) {
+                    if (!entered) break;
+                    exit_w = event.wi;
+                    exit_pdf = event.pdf;
+                    exit_weight = event.f / event.pdf;
+                } else if (goes_on) {
+                    beta = beta * event.f * (abs(event.wi.z) / event.pdf);
+                    w = event.wi;
+                }
+                if (sampling) continue;
+                // What the coat reflects, and what leaves it.
+                bool outside = step == 0u;
+                bool leaves = !at_coat && !coat_specular && (weighing || w.z > 0.0f);
+                if (leaves || (outside && walk == 0u)) {
+                    bool exact = !outside && valuing && (b.flags & MATERIAL_EXACT_COAT) != 0u;
+                    vec3 from = outside ? wo : (exact ? wi : -w);
+                    vec3 to = exact ? -w : wi;
+                    uint lobes = LOBE_BOTH_SIDES;
+                    if (outside && weighing) lobes = LOBE_REFLECTION;
+                    if (!outside && valuing) lobes = LOBE_TRANSMISSION;
+                    float pdf;
+                    Spectrum f =
+                        dielectric_lobe_eval(b.alpha, b.eta, from, to, exact ? 1u - transport : transport, lobes, pdf);
+                    if (outside) {
+                        surface = weighing ? Spectrum(pdf) : f;
+                    } else if (weighing) {
+                        sum = sum + Spectrum(base_specular ? pdf : arrived + power_heuristic(event_pdf, pdf) * pdf);
+                    } else {
+                        float share = !scattered && base_specular ? 1.0f : power_heuristic(event_pdf, pdf);
+                        sum = sum + beta * f * (share * layer_transmittance(b.thickness - z, w));
+                    }
+                }
+                if (!at_coat && !(max_value(beta) > 0.0f)) break;
+            }
+        }
+        if (valuing) value = surface + sum / float(b.samples);
+        if (weighing) density = 0.1f * INV_FOUR_PI + 0.9f * (surface[0] + sum[0] / float(b.samples));
+    }
+    return found;
+}
+
+#endif
