@@ -1,4 +1,4 @@
-// Tests every photon: what "in range" means, and the reference of every other structure.
+// Tests every photon: the reference that every other structure is tested against.
 #include "core/kernel/gather.h"
 
 BUFFER_RO(1, uvec4, arguments)  // x: number of photons

@@ -28,13 +28,14 @@ class Bvh : public PhotonMap {
  public:
     BvhParams params;
     PhotonMapCapabilities capabilities() const override {
-        // A driver walks boxes in an order of its own, to their end.
+        // A driver traverses boxes in an unspecified order, and always all that are hit.
         return {.exact = true,
                 .fixed_order = params.ray_query == kOff,
                 .k_nearest = params.ray_query != kOn,
                 .boxes = params.ray_query == kOn};
     }
-    ConstructionTraffic traffic() const override { return {.accesses = 1, .sorted_bits = 32}; }  // the photon
+    // The access reads a photon.
+    ConstructionTraffic traffic() const override { return {.accesses = 1, .sorted_bits = 32}; }
 
  protected:
     static constexpr const char* kCode = "accel/photons/bvh/bvh_code.kernel.h";
@@ -52,7 +53,7 @@ class Bvh : public PhotonMap {
         return {kCode, kOrder, kBoxes, kLeaves, kLevel, kRadixKernels[0], kRadixKernels[1]};
     }
 
-    // Where each level's boxes lie. Returns their number.
+    // Sets each level's range of boxes. Returns the number of boxes of all levels.
     uint32_t lay_out(TreeRecord& record) const {
         uint32_t boxes = 0, level = 0;
         for (uint32_t nodes = (record.count + params.leaf - 1) / params.leaf;; nodes = (nodes + 3) / 4) {
@@ -84,7 +85,8 @@ class Bvh : public PhotonMap {
         const BufferHandle order = sorted == pairs ? other : pairs;
         run(kOrder, batch_count(count), {{"pairs", sorted}, {"order", order}});
         if (ray_query()) {
-            // In order, photons of neighbouring boxes lie together; and not every driver (Mesa 25's lavapipe) sorts boxes.
+            // In Morton order, the photons of neighbouring boxes are close in memory. Also, some drivers (Mesa 25's
+            // lavapipe) do not sort boxes themselves.
             run(kBoxes, count);
             build_boxes(boxes, count);
             return;

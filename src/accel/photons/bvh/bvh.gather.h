@@ -1,6 +1,7 @@
-// Walks the tree depth first, without a stack: from node i of a level to its first child 4i, or where its box is out of range or its
-// photons are done, to the next sibling, or up. Children come in the order of node ^ first, where `first` is the path to a leaf: for
-// consumers that shrink one near the query, so that its neighbours are looked at before the rest.
+// Traverses the tree depth first, without a stack: from node i of a level to its first child 4i; or, if its box is out
+// of range or its photons are done, to the next sibling, or up. Children are visited in the order of node ^ first,
+// where `first` is the path to a leaf. For consumers that shrink their limit this leaf is near the query, so that its
+// neighbours are visited before the rest.
 #include "core/kernel/gather.h"
 #include "accel/photons/bvh/bvh_layout.h"
 
@@ -9,13 +10,13 @@ BUFFER_RO(2, TreeBox, boxes)
 BUFFER_RO(3, uvec4, places)
 BUFFER_RO(4, uvec4, fluxes)
 
-// No photon of the box is nearer: each step of in_range keeps order, whatever it rounds.
+// No photon of the box is nearer: the operations are those of in_range, each of which is monotonic, even when rounded.
 FN float box_distance_squared(IN(TreeBox) box, vec3 q) {
     vec3 d = max(max(vec3(box.low) - q, q - vec3(box.high)), vec3(0.0f));
     return d.x * d.x + d.y * d.y + d.z * d.z;
 }
 
-// A leaf near q: from the root on, the nearest child.
+// A leaf near q, found by descending from the root to the nearest child.
 FN uint leaf_near(vec3 q, uint root) {
     uint node = 0u;
     uint level = root;
@@ -51,7 +52,7 @@ KERNEL(bvh) {
     if (count > 0u) first = leaf_near(vec3(q), root);
 #endif
     bool finished = count == 0u;
-    // Every node once, at most.
+    // Each node is visited at most once, so this bound is never reached.
     for (uint steps = 0u; !finished && steps <= 2u * count + 64u; ++steps) {
         uvec4 of_level = tree[0].levels[level];
         uint node = visit ^ (first >> (2u * level));

@@ -1,13 +1,13 @@
-// For ray queries: a box about each photon that holds every point whose query finds it.
+// For ray queries: the box around each photon that contains every query point that finds the photon.
 #include "accel/photons/bvh/bvh_layout.h"
 
 BUFFER_RO(0, TreeRecord, tree)
 BUFFER_RO(1, uvec4, places)
 BUFFER_RW(2, float, boxes)
 
-// range_reach alone would do: rounding keeps order, so a float q >= p - reach is not below the float nearest to p - reach. The margin, four
-// times the rounding error of the largest number in it, keeps q off the faces, for drivers that scale origin and box by the
-// inverse direction before they subtract, and gives every box a volume.
+// range_reach alone would suffice: rounding is monotonic, so a float q >= p - reach is not below the float nearest to p
+// - reach. The margin is four times the rounding error of the largest number involved. It keeps q off the faces, for
+// drivers that scale origin and box by the inverse direction before they subtract, and gives every box a volume.
 CONST float BOX_MARGIN = 2.3841858e-7f;  // 2^-22
 
 KERNEL(bvh_boxes) {

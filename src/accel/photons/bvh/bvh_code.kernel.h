@@ -1,4 +1,4 @@
-// The upper half of each photon's Morton code, by which all are sorted.
+// Computes the upper half of each photon's Morton code, by which photons are sorted.
 #include "accel/photons/bvh/bvh_layout.h"
 
 BUFFER_RO(0, TreeRecord, tree)

@@ -1,4 +1,4 @@
-// The box of each leaf: of a run of photons.
+// Computes the box of each leaf, which is a run of photons.
 #include "accel/photons/bvh/bvh_layout.h"
 
 BUFFER_RO(0, TreeRecord, tree)

@@ -1,4 +1,4 @@
-// One level of boxes from the level below.
+// Computes one level of boxes from the level below.
 #include "accel/photons/bvh/bvh_layout.h"
 
 BUFFER_RO(0, TreeRecord, tree)

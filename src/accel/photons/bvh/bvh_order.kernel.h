@@ -1,16 +1,17 @@
-// Copies the photons in order: positions, and the rest. Those that share the upper half of their code are sorted by the lower half, and
-// where that is the same, too, by key: the order must not depend on that of storage. The first of each run does it.
+// Copies the photons in sorted order, positions separately from the rest. Runs with the same upper half of the code are
+// sorted by the lower half, then by key, because the result must not depend on the order of storage. The invocation
+// that has a run's first photon copies the run.
 #include "accel/photons/bvh/bvh_layout.h"
 
 BUFFER_RO(0, TreeRecord, tree)
 BUFFER_RO(1, PhotonRecord, photons)
 BUFFER_RO(2, uvec2, pairs)
-BUFFER_RW(3, uvec2, order)  // of long runs
+BUFFER_RW(3, uvec2, order)  // scratch memory for sorting long runs
 BUFFER_RW(4, uvec4, places)
 BUFFER_RW(5, uvec4, fluxes)
 #include "core/kernel/sort.h"
 
-CONST uint RUN_SHORT = 32u;  // photons that are sorted in registers
+CONST uint RUN_SHORT = 32u;  // runs of up to this many photons are sorted in registers
 
 FN void bvh_copy(uint to, uint from) {
     places[to] = photons[from].place;
@@ -41,7 +42,7 @@ FN void bvh_long_run(uint begin, uint end) {
     }
     if (i != end) REPORT_UNFINISHED();
     sort_order(begin, end);
-    // Runs within the run.
+    // Photons whose lower halves are the same, too, are sorted by key.
     uint first = begin;
     uint next = begin + 1u;
     for (; next <= end; ++next) {
@@ -58,7 +59,7 @@ FN void bvh_long_run(uint begin, uint end) {
 
 KERNEL(bvh_order) {
     uint count = tree[0].count;
-    // What the fourth invocation from here will read: this one's own would come too late.
+    // Prefetches for the fourth invocation from here: for this one's own photons it would be too late.
     for (uint k = 0u; k < BATCH; ++k) {
         uint i = batch_item(index + 4u, k);
         if (i < count) PREFETCH(photons[pairs[i].y]);

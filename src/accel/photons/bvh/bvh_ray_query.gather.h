@@ -1,5 +1,5 @@
-// Photons whose boxes hold the query point, as the device's ray tracer finds them: a ray of almost no length meets the boxes that it
-// starts in. In range of a photon is in_range; a box only says which photons to test.
+// The device's ray tracer finds the photons whose boxes contain the query point: a ray of almost no length hits the
+// boxes in which it starts. The boxes only select the photons to test; in_range decides.
 #include "core/kernel/gather.h"
 #include "accel/photons/bvh/bvh_layout.h"
 
@@ -13,9 +13,10 @@ KERNEL(bvh_ray_query) {
     if (q.w < 0.0f) return;
     Gathered gathered = gather_begin(index);
     uint count = tree[0].count;
-    // Where the boxes are too small for this query, every photon is tested.
+    // If the boxes are too small for this query, every photon is tested.
     bool large = q.w > tree[0].radius.x;
-    // No component of the direction is 0, by whose inverse drivers multiply. In floats the ray ends where it starts.
+    // No component of the direction is 0, because drivers multiply by its inverse. In floats, the ray ends where it
+    // starts.
     rayQueryEXT ray;
     rayQueryInitializeEXT(ray, boxes, gl_RayFlagsNoneEXT, 0xffu, vec3(q), 0.0f, vec3(1.0f), 1e-30f);
     bool finished = false;

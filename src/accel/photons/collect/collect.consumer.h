@@ -1,4 +1,5 @@
-// Adds up what a query finds: for tests and the benchmark. The checksum of keys does not depend on their order.
+// Sums up the photons that a query finds, for tests and the benchmark. The checksum of keys does not depend on their
+// order.
 #include "core/kernel/gather.h"
 #include "accel/photons/collect/collect_layout.h"
 
@@ -30,7 +31,7 @@ FN vec4 gather_value(uint query, IN(PhotonRecord) photon, float distance_squared
     return slot_of(power, 1.0f);
 }
 
-// No keys: the checksum is 0.
+// Sums have no keys, so the checksum is 0.
 FN Gathered gather_sums(uint query, vec4 sums) {
     Gathered g = gather_begin(query);
     g.sum = sums;

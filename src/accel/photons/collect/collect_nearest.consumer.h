@@ -5,11 +5,11 @@
 #include "accel/photons/collect/collect_layout.h"
 
 BUFFER_RW(16, CollectResult, results)
-BUFFER_RO(17, uvec4, wanted)  // x: photons
+BUFFER_RO(17, uvec4, wanted)  // x: number of photons
 
 struct Gathered {
     Nearest nearest;
-    float handed;  // photons that the structure handed over
+    float handed;  // photons that the structure passed on
 };
 
 FN float gather_limit(IN(Gathered) g) { return g.nearest.limit; }
@@ -27,7 +27,7 @@ FN void gather_add(INOUT(Gathered) g, uint query, IN(PhotonRecord) photon, float
     if (distance_squared <= g.nearest.limit) nearest_add(g.nearest, photon, distance_squared);
 }
 
-// Maps that know sums only find no nearest.
+// Maps that only know sums cannot find the nearest photons.
 FN vec4 gather_value(uint query, IN(PhotonRecord) photon, float distance_squared) { return vec4(0.0f); }
 FN Gathered gather_sums(uint query, vec4 sums) { return gather_begin(query); }
 

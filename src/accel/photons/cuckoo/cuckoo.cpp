@@ -24,7 +24,7 @@ class Cuckoo : public PhotonMap {
  public:
     CuckooParams params;
     PhotonMapCapabilities capabilities() const override { return {.exact = true, .fixed_order = true}; }
-    // The photon; of the last build, the entry of each cell.
+    // The access reads a photon; the atomics insert the cells of the last build into the table.
     ConstructionTraffic traffic() const override {
         return {.accesses = 1, .atomics = cells_per_photon_, .sorted_bits = 32};
     }
@@ -62,7 +62,8 @@ class Cuckoo : public PhotonMap {
         fill_table(record);
     }
 
-    // With new hash functions until all cells but the stash's have an entry. The table grows a little with each try, so that it ends.
+    // Retries with new hash functions until every cell has an entry or fits the stash. The table grows with each
+    // attempt, so that this terminates.
     void fill_table(CuckooRecord& record) {
         double entries = std::ceil(record.cells * double(params.table_size)) + 4;
         for (uint32_t attempt = 0;; ++attempt, entries *= 1.1) {

@@ -1,4 +1,5 @@
-// Looks up the run of each cell that a query's box meets: four entries at most, and the stash if anything is there.
+// Looks up the run of each cell that a query's box overlaps, in at most four table entries, and in the stash if it is
+// not empty.
 #include "core/kernel/gather.h"
 #include "accel/photons/cuckoo/cuckoo_layout.h"
 
@@ -9,11 +10,11 @@ BUFFER_RO(4, uvec2, cells)
 BUFFER_RO(5, uvec4, places)
 BUFFER_RO(6, uvec4, fluxes)
 
-// The cell's number plus one, or 0.
+// The index of the cell's run plus one, or 0 if the cell has no photons.
 FN uint cuckoo_find(IN(CuckooRecord) c, uint key) {
     for (uint way = 0u; way < CUCKOO_WAYS; ++way) {
         uint item = table[cuckoo_entry(c, key, way)];
-        // An entry that was taken is never given back: nobody who would have taken this one came.
+        // An occupied entry never becomes empty again. So the key was never stored here, nor at a later way.
         if (item == 0u) return 0u;
         if (cells[item - 1u].x == key) return item;
     }

@@ -1,4 +1,4 @@
-// Each photon's cell, by which all are sorted.
+// Computes the key of each photon's cell, by which photons are sorted.
 #include "accel/photons/cuckoo/cuckoo_layout.h"
 
 BUFFER_RO(0, CuckooRecord, cuckoo)

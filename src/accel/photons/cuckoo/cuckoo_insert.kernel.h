@@ -1,11 +1,11 @@
-// Each cell takes an entry, and whoever had it moves on to its next one (Pagh and Rodler 2004; in parallel: Alcantara et al. 2009). After
-// too many moves a cell goes to the stash.
+// Each cell takes an entry, and the cell that it evicts moves on to its own next entry (Pagh and Rodler 2004; in
+// parallel: Alcantara et al. 2009). After too many moves, the cell that was evicted last goes to the stash.
 #include "accel/photons/cuckoo/cuckoo_layout.h"
 
 BUFFER_RO(0, CuckooRecord, cuckoo)
 BUFFER_RO(1, uvec2, cells)
-BUFFER_RW(2, uint, table)  // a cell's number plus one; 0: empty
-BUFFER_RW(3, uint, stash)  // its size, then numbers plus one
+BUFFER_RW(2, uint, table)  // a cell's index plus one; 0: empty
+BUFFER_RW(3, uint, stash)  // the number of cells without an entry, then their indices plus one
 
 CONST uint MOST_MOVES = 200u;
 

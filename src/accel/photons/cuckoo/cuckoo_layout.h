@@ -1,4 +1,4 @@
-// A dictionary from cells to runs of photons. A cell's key is a hash of 32 bits; cells that share one share a run.
+// A dictionary from cells to runs of photons. A cell's key is a 32-bit hash; cells with the same key share a run.
 #ifndef LAMPYRIS_CUCKOO
 #define LAMPYRIS_CUCKOO
 
@@ -8,9 +8,9 @@ CONST uint CUCKOO_WAYS = 4u;
 
 struct CuckooRecord {
     PhotonGrid grid;
-    uvec4 seeds;  // of each way
-    uint cells;   // that hold photons: runs
-    uint stash;   // most cells that may be stashed
+    uvec4 seeds;  // one for each hash function (way)
+    uint cells;   // number of runs, that is, of keys whose cells hold photons
+    uint stash;   // capacity of the stash
     uint unused0;
     uint unused1;
 };

@@ -1,17 +1,18 @@
-// Copies the photons in order, positions and the rest apart, each run's by key: the order must not depend on that of storage. The first of
-// each run marks it, and does it.
+// Copies the photons in sorted order, positions separately from the rest. Runs are sorted by key, because the result
+// must not depend on the order of storage. The invocation that has a run's first photon marks the run's beginning and
+// copies the run.
 #include "accel/photons/cuckoo/cuckoo_layout.h"
 
 BUFFER_RO(0, CuckooRecord, cuckoo)
 BUFFER_RO(1, PhotonRecord, photons)
 BUFFER_RO(2, uvec2, pairs)
-BUFFER_RW(3, uvec2, order)  // room to sort a long run
-BUFFER_RW(4, uint, runs)    // 1 where one begins
+BUFFER_RW(3, uvec2, order)  // scratch memory for sorting long runs
+BUFFER_RW(4, uint, runs)    // 1 for the first photon of a run, otherwise 0
 BUFFER_RW(5, uvec4, places)
 BUFFER_RW(6, uvec4, fluxes)
 #include "core/kernel/sort.h"
 
-CONST uint RUN_SHORT = 64u;  // photons that are sorted in registers
+CONST uint RUN_SHORT = 64u;  // runs of up to this many photons are sorted in registers
 
 FN void cuckoo_copy(uint to, uint from) {
     places[to] = photons[from].place;
@@ -39,7 +40,7 @@ FN void cuckoo_long_run(uint begin, uint end) {
 
 KERNEL(cuckoo_order) {
     uint count = cuckoo[0].grid.count;
-    // What the invocation after the next will read: this one's own would come too late.
+    // Prefetches for the invocation after the next: for this one's own photons it would be too late.
     for (uint k = 0u; k < BATCH; ++k) {
         uint i = batch_item(index + 2u, k);
         if (i < count) PREFETCH(photons[pairs[i].y]);

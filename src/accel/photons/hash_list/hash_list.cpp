@@ -5,15 +5,15 @@ namespace {
 
 class HashList : public ListGrid {
  public:
-    // The head, without an atomic; for the order, the key and link of each.
+    // An access to the head of a bucket, without an atomic; if chains are sorted, another to the photon's key and link.
     ConstructionTraffic traffic() const override { return {.accesses = keyed() ? 2.0 : 1.0, .one_thread = true}; }
 
  protected:
     static constexpr const char* kInsert = "accel/photons/hash_list/hash_list_insert.kernel.h";
     static constexpr const char* kOrder = "accel/photons/hash_list/hash_list_order.kernel.h";
     static constexpr const char* kPlace = "accel/photons/hash_list/hash_list_place.kernel.h";
-    static constexpr uint32_t kChunk = 4096;   // CHUNK of the first and the last
-    static constexpr uint32_t kSpan = 16 * 8;  // CHAIN_SPAN of linked_list_chains.h, CHUNK of hash_list_order
+    static constexpr uint32_t kChunk = 4096;   // CHUNK of hash_list_insert and hash_list_place
+    static constexpr uint32_t kSpan = 16 * 8;  // CHAIN_SPAN of linked_list_chains.h * CHUNK of hash_list_order
     std::vector<std::string> kernels() const override { return {kInsert, kOrder, kPlace}; }
 
     void construct(const PhotonSet& photons) override {

@@ -1,7 +1,7 @@
-// One thread links one photon after the other: invocations run one by one, each for CHUNK photons (hash_list.cpp).
+// One thread links one photon after another: invocations run one at a time, each for CHUNK photons (hash_list.cpp).
 #include "core/kernel/photon_grid.h"
 
-BUFFER_RO(0, PhotonGrid, grid)  // these as in linked_list_link
+BUFFER_RO(0, PhotonGrid, grid)  // all buffers as in linked_list_link.kernel.h
 BUFFER_RO(1, PhotonRecord, photons)
 BUFFER_RW(2, uint, heads)
 BUFFER_RW(3, uvec2, links)

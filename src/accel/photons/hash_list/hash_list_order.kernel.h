@@ -1,4 +1,4 @@
-// The same thread sorts the chains by key, CHUNK times as many an invocation as where invocations share the work.
+// The same thread sorts the chains by key. An invocation sorts CHUNK times as many chains as one of linked_list_order.
 #include "core/kernel/photon_grid.h"
 
 BUFFER_RO(0, PhotonGrid, grid)

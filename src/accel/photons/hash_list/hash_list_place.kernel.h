@@ -1,4 +1,4 @@
-// The same thread writes the nodes, CHUNK an invocation.
+// The same thread writes the nodes, CHUNK per invocation.
 #include "core/kernel/photon_grid.h"
 
 BUFFER_RO(0, PhotonGrid, grid)

@@ -27,7 +27,8 @@ class KdTree : public PhotonMap {
     PhotonMapCapabilities capabilities() const override {
         return {.exact = true, .fixed_order = true, .k_nearest = true};
     }
-    // Count, place and photon, for each round that a photon of the last build went through.
+    // The atomic counts; the accesses are to the place and the photon. All happen once for each round that the mean
+    // photon of the last build went through.
     ConstructionTraffic traffic() const override { return {.accesses = 2 * rounds_, .atomics = rounds_}; }
 
  protected:
@@ -43,11 +44,11 @@ class KdTree : public PhotonMap {
     }
 
     struct Round {
-        uint32_t larges = 0, chunks = 0, cells = 0, levels = 0;  // `levels`: of the node that has most
+        uint32_t larges = 0, chunks = 0, cells = 0, levels = 0;  // `levels`: most levels of a node
         uint32_t first_node = 0;
     };
 
-    // One of a round's buffers.
+    // A buffer that each round has one of.
     const BufferHandle& keep_of(const char* what, size_t round, size_t bytes) {
         return keep(fmt::format("{} {}", what, round), bytes);
     }
@@ -64,7 +65,8 @@ class KdTree : public PhotonMap {
         return upload("arguments", args);
     }
 
-    // The node that holds all photons. The set's box may be wrong: the next round's are not.
+    // The node of all photons. Its bounds are the set's box, which may be wrong; later rounds compute the bounds of
+    // their nodes.
     Round open_root() {
         KdCode::KdLarge root{};
         root.photons = glm::uvec4(0, photons_.count, 0, 0);
@@ -81,7 +83,7 @@ class KdTree : public PhotonMap {
         return {1, (photons_.count + KdCode::KD_CHUNK - 1) / KdCode::KD_CHUNK, 1u << root.cells.y, root.cells.y, 0};
     }
 
-    // Sorts the photons of the round's large nodes by cell. Returns the next round's nodes, of which there may be none.
+    // Sorts the photons of the round's large nodes by cell. Returns the next round, which may have no nodes.
     Round split(const std::vector<Round>& rounds) {
         const size_t round = rounds.size() - 1;
         const Round& now = rounds.back();
@@ -130,7 +132,7 @@ class KdTree : public PhotonMap {
         return next;
     }
 
-    // Copies the photons that the round has brought to leaves, and builds its nodes.
+    // Copies the photons that reached leaves in this round, and builds its nodes.
     void join(const std::vector<Round>& rounds, size_t round) {
         const uint32_t groups = rounds[round].cells / KdCode::KD_GROUP;
         keep("boxes", size_t(groups) * sizeof(KdCode::KdBox));
@@ -170,7 +172,7 @@ class KdTree : public PhotonMap {
     }
 
  private:
-    double rounds_ = 0;  // of the last build, of the mean photon
+    double rounds_ = 0;  // that the mean photon of the last build went through
 };
 
 REGISTER_PHOTON_MAP(KdTree, KD_TREE_PARAMS, "kd_tree",

@@ -1,4 +1,5 @@
-// Walks the tree near side first. What a query has still to see waits on a stack, with the distance of its region.
+// Traverses the tree, nearer side first. Sides that are still to be visited wait on a stack, with the distance to their
+// regions.
 #include "core/kernel/gather.h"
 #include "accel/photons/kd_tree/kd_tree_layout.h"
 
@@ -7,13 +8,13 @@ BUFFER_RO(2, KdNode, nodes)
 BUFFER_RO(3, uvec4, places)
 BUFFER_RO(4, uvec4, fluxes)
 
-// Only sides that are in range wait: more than a few are rare. Where there is no room for another, a node is read like a leaf.
+// Only sides that are in range wait, and rarely more than a few. If the stack is full, a node is read like a leaf.
 CONST uint KD_STACK = 32u;
 
 FN vec3 kd_replaced(vec3 v, uint axis, float x) {
     return vec3(axis == 0u ? x : v.x, axis == 1u ? x : v.y, axis == 2u ? x : v.z);
 }
-// In the order of in_range's operations.
+// The operations of in_range, in the same order.
 FN float kd_squared(vec3 d) { return d.x * d.x + d.y * d.y + d.z * d.z; }
 
 KERNEL(kd_tree) {
@@ -25,26 +26,26 @@ KERNEL(kd_tree) {
 #ifdef GATHER_SHRINKS
     limit = min(limit, gather_limit(gathered));
 #endif
-    uvec4 stack
-        [KD_STACK];  // x: whether it is a node, not a leaf; y: the node; z, w: the first photon, and the one after the last
+    // x: 1 for a node, 0 for a leaf; y: the node; z, w: its first photon, and the one after its last.
+    uvec4 stack[KD_STACK];
     vec4 stack_apart[KD_STACK];  // w: squared distance
     uint waiting = 0u;
     uint node = 0u;
     bool is_node = count > 0u && nodes[1].words.x != 0u;
     uint begin = 0u;
     uint end = count;
-    // How far the query lies outside of the region of the node, along each axis. No photon there can be nearer: a difference to a bound,
-    // and all that in_range does with it, keeps order, whatever it rounds.
+    // The distance of the query from the node's region, along each axis. No photon there can be nearer: the difference
+    // to a bound, and all operations of in_range on it, are monotonic, even when rounded.
     vec3 apart = vec3(0.0f);
     bool finished = count == 0u;
-    // Each node and leaf once, at most, and each may wait once.
+    // Each node and leaf is visited once at most, and waits once at most, so this bound is never reached.
     for (uint steps = 0u; !finished && steps <= 4u * count + 64u; ++steps) {
         bool descends = false;
         if (is_node && waiting < KD_STACK) {
             KdNode n = nodes[node];
             uint child = kd_child(n);
             uint middle = n.words.z;
-            // What comes after the children: in the first round's levels it lies where it would in a heap.
+            // Prefetches a grandchild. In the first round's levels, its index is the one that it would have in a heap.
             if (2u * child < arguments[0].next_node) PREFETCH(nodes[2u * child]);
             if (end - begin < 64u) {
                 PREFETCH(places[begin]);
@@ -106,7 +107,7 @@ KERNEL(kd_tree) {
             if (i != end) REPORT_UNFINISHED();
         }
         if (descends) continue;
-        // The latest that still matters.
+        // Takes the side that was added last and is still in range.
         bool found = false;
         while (waiting > 0u && !found) {
             waiting -= 1u;

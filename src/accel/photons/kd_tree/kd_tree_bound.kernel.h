@@ -1,4 +1,4 @@
-// Puts the photons of large nodes one after the other, and finds their bounds.
+// Stores the photons of each large node contiguously, and computes their bounds.
 #include "accel/photons/kd_tree/kd_tree_layout.h"
 
 BUFFER_RO(0, KdArgs, arguments)
@@ -16,7 +16,7 @@ KERNEL(kd_tree_bound) {
     uint begin = larges[large].photons.x + (chunk - larges[large].photons.z) * KD_CHUNK;
     uint end = min(begin + KD_CHUNK, larges[large].photons.x + larges[large].photons.y);
     if (begin + batch_item(index, 0u) - chunk * KD_CHUNK >= end) return;
-    // What the invocations after the next few will read: a batch of its own is too short to hide how far away memory is.
+    // Prefetches six batches ahead: an invocation's own batch is too short to hide the latency of memory.
     for (uint k = 0u; k < BATCH; ++k) {
         uint i = begin + batch_item(index, k) - chunk * KD_CHUNK + 6u * BATCH;
         PREFETCH(photons[order[min(i, count - 1u)]].place);
@@ -38,7 +38,7 @@ KERNEL(kd_tree_bound) {
     }
     uvec4 least = ~uvec4(kd_ordered(low.x), kd_ordered(low.y), kd_ordered(low.z), first_key);
     uvec4 greatest = uvec4(kd_ordered(high.x), kd_ordered(high.y), kd_ordered(high.z), last_key);
-    // Most find that the bounds are there already, and need no atomic.
+    // Most invocations find that the bounds already include theirs, and need no atomic.
     uvec4 known = larges[large].least;
     if (least.x > known.x) ATOMIC_MAX_U32(larges[large].least.x, least.x);
     if (least.y > known.y) ATOMIC_MAX_U32(larges[large].least.y, least.y);

@@ -1,4 +1,5 @@
-// How many photons each cell gets, and which of them each photon is (in the order of the machine, which is not fixed).
+// Counts the photons of each cell, and gives each photon its rank among them (in the order of execution, which is not
+// fixed).
 #include "accel/photons/kd_tree/kd_tree_layout.h"
 
 BUFFER_RO(0, KdArgs, arguments)
@@ -7,7 +8,7 @@ BUFFER_RO(2, KdLarge, larges)
 BUFFER_RO(3, uint, chunks)
 BUFFER_RO(4, uvec4, places)  // of the photons in large nodes, from the second round on
 BUFFER_RW(5, uint, starts)
-BUFFER_RW(6, uint, scratch)  // (cell, rank) of each photon; then, from the second round on, its index
+BUFFER_RW(6, uint, scratch)  // (cell, rank) of each photon; after these, from the second round on, its index
 
 KERNEL(kd_tree_count) {
     bool first_round = arguments[0].round == 0u;
@@ -17,7 +18,7 @@ KERNEL(kd_tree_count) {
     uint end = min(begin + KD_CHUNK, large.photons.x + large.photons.y);
     vec3 low = kd_low(large);
     if (begin + batch_item(index, 0u) - chunk * KD_CHUNK >= end) return;
-    // Without a branch, so that a compiler can do several at once; the last photon stands in for those that are none.
+    // Without a branch, so that a compiler can vectorise this; indices past the end read the last photon.
     float x[BATCH];
     float y[BATCH];
     float z[BATCH];

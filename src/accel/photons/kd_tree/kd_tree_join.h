@@ -1,9 +1,9 @@
-// Builds the four levels (or fewer) of nodes above a group of cells, or of nodes, from the bottom. The nodes are the kernel's own:
-// BUFFER_RW(..., KdNode, nodes), declared before this.
+// Builds the four levels (or fewer) of nodes above a group of cells, or of nodes, bottom up. Before including this
+// file, a kernel must declare BUFFER_RW(..., KdNode, nodes).
 //
-// The large node's own node lies at its base, those below it at base + their number in a heap (1 is the root, 2h and 2h + 1 the
-// children of h); base + 1 is room for a sibling. Where all photons of a node lie in one of its halves there is no node: that half
-// takes its place, and empty space is cut off without a node.
+// A large node is stored at its base, the nodes below it at base + their number in a heap (1 is the root, 2h and 2h + 1
+// are the children of h); base + 1 is left free for a sibling. If all photons of a node lie in one of its halves, the
+// node is omitted and that half takes its place, so that empty space is cut off without a node.
 #ifndef LAMPYRIS_KD_TREE_JOIN
 #define LAMPYRIS_KD_TREE_JOIN
 
@@ -12,14 +12,15 @@
 struct KdGroup {
     vec4 low[KD_GROUP];
     vec4 high[KD_GROUP];
-    uint starts[KD_GROUP + 1u];  // where the photons of each begin
-    uint places[KD_GROUP];       // of their nodes
-    uint are_nodes;              // a bit for each: not a leaf, nor empty
+    uint starts[KD_GROUP + 1u];  // index of each one's first photon
+    uint places[KD_GROUP];       // indices of their nodes
+    uint are_nodes;              // a bit for each: 1 for a node, 0 for a leaf or if empty
 };
 
 FN uint kd_heap_place(uint base, uint number) { return number == 1u ? base : base + number; }
 
-// Of `width` nodes on a level of the large node's (0 is itself), the first of which is that level's `first`. Returns the root's box.
+// Joins `width` nodes of level `of_level` below the large node (level 0 is the large node itself), the first of which
+// is number `first` of its level. Returns the box of the root of what was built.
 FN KdBox kd_join(IN(KdLarge) large, uint base, uint leaf, uint of_level, uint first, uint width, INOUT(KdGroup) g) {
     uint stride = 1u;
     uint level = of_level;
@@ -65,7 +66,7 @@ FN KdBox kd_join(IN(KdLarge) large, uint base, uint leaf, uint of_level, uint fi
         level -= 1u;
         first_child = first_child / 2u;
     }
-    // Where the next step, or the parent, looks for it.
+    // The index at which the next step, or the parent, looks for the root.
     uint place = kd_heap_place(base, (1u << level) + first_child);
     if (g.are_nodes != 0u && g.places[0] != place) nodes[place] = nodes[g.places[0]];
     KdBox box;
@@ -74,7 +75,7 @@ FN KdBox kd_join(IN(KdLarge) large, uint base, uint leaf, uint of_level, uint fi
     return box;
 }
 
-// The tree's root may be a leaf: this says so in the place beside it.
+// The root of the whole tree may be a leaf: the free place beside it says whether it is a node.
 FN void kd_join_root(IN(KdLarge) large, uint round, uint built, IN(KdBox) box) {
     if (round == 0u && large.cells.y == built) nodes[1].words = uvec4(box.low.w != 0.0f ? 1u : 0u, 0u, 0u, 0u);
 }

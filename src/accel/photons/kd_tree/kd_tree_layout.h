@@ -1,22 +1,24 @@
-// A kd-tree over photons, built breadth first: a round takes each large node (one of more photons than a leaf may have) down
-// several levels of splits in the spatial middle at once. The cells that these end in are numbered so that every node between is a
-// range of cells, and photons are sorted by cell; cells that are large again are the next round's nodes.
+// A kd-tree over photons, built breadth first: a round splits each large node (one with more photons than two leaves,
+// see kd_is_large) several levels down at once, at spatial middles. The cells below the last level are numbered so that
+// every node above them is a range of cells, and photons are sorted by cell. Cells that are still large are the next
+// round's nodes.
 #ifndef LAMPYRIS_KD_TREE
 #define LAMPYRIS_KD_TREE
 
 #include "core/kernel/photon.h"
 
-CONST uint KD_GROUP_LEVELS = 4u;    // that one invocation builds, bottom up
-CONST uint KD_GROUP = 16u;          // cells, or nodes of one level, below them
+CONST uint KD_GROUP_LEVELS = 4u;    // levels that one invocation builds, bottom up
+CONST uint KD_GROUP = 16u;          // cells, or nodes of one level, that it starts from
 CONST uint KD_CHUNK = 32u * BATCH;  // photons of a large node that 32 invocations share
 CONST uint KD_MAX_LEAF = 64u;
-CONST uint KD_SPATIAL_ROUNDS = 6u;  // what these do not separate is split by key
+CONST uint KD_SPATIAL_ROUNDS = 6u;  // photons that these do not separate are split by key
 
-// A node of the tree has photons on both sides. Its photons are a range that whoever comes to it knows; bounds are tight.
+// A node of the tree has photons on both sides. Its range of photons is not stored, because it is known on reaching the
+// node. Bounds are tight.
 struct KdNode {
-    // x: highest coordinate of the left photons along the axis, y: lowest of the right ones (floats' bits); z: the first photon that
-    // is right; w: place of the left child, that of the right one is next (28 bits); 2 bits: whether left and right are
-    // nodes, not leaves; 2 bits: the axis.
+    // x: highest coordinate of the left photons along the axis, y: lowest of the right ones (floats' bits); z: index of
+    // the first right photon; w: index of the left child, which the right child follows (28 bits); whether the right
+    // and the left child are nodes, not leaves (2 bits); the axis (2 bits).
     uvec4 words;
 };
 FN uint kd_axis(IN(KdNode) node) { return node.words.w & 3u; }
@@ -24,7 +26,7 @@ FN bool kd_left_is_node(IN(KdNode) node) { return (node.words.w & 4u) != 0u; }
 FN bool kd_right_is_node(IN(KdNode) node) { return (node.words.w & 8u) != 0u; }
 FN uint kd_child(IN(KdNode) node) { return node.words.w >> 4u; }
 
-// Of a node, while the tree is being built. low.w: 1 where it is a node, 0 where it is a leaf (or empty).
+// The bounds of a node, while the tree is being built. low.w: 1 for a node, 0 for a leaf (or if empty).
 struct KdBox {
     vec4 low;
     vec4 high;
@@ -32,28 +34,27 @@ struct KdBox {
 
 struct KdArgs {
     uint count;         // of photons
-    uint leaf_photons;  // of a leaf, on average at most
+    uint leaf_photons;  // of a leaf, at most, on average
     uint round;
     uint groups;      // of cells, in this round
-    uint first_node;  // of the round
-    uint next_node;   // the next round's first
-    uint step;        // of levels; of list, whether it is its second run
+    uint first_node;  // of this round
+    uint next_node;   // first node of the next round
+    uint step;        // of kd_tree_levels; in kd_tree_list: 0 counts, 1 writes
     uint unused0;
 };
 
 struct KdLarge {
     uvec4 photons;  // x: first, y: number; z: first chunk
-    uvec4 cells;    // x: first of the round's, y: levels, so that there are 2^y
-    // Least and greatest coordinates and key, as numbers that order like them; of the least, the complement: there is an atomic
-    // maximum only.
+    uvec4 cells;    // x: index of the first one in this round, y: levels, so that there are 2^y cells
+    // Least and greatest coordinates and key, as integers of the same order (kd_ordered). The least ones are stored as
+    // complements, because there is only an atomic maximum.
     uvec4 least;
     uvec4 greatest;
-    vec4 scale;    // of each axis, cells per unit
-    vec4 limit;    // the last cell
-    uvec4 shifts;  // of each axis, kd_part()
-    uvec4
-        shape;   // x: levels along the longest axis alone, y: pairs of levels, z: triples; w: levels too many, in these
-    uvec4 axes;  // x, y, z: the axes, longest first; w: 0, or 32 + shift of the key where photons are split by key
+    vec4 scale;    // of each axis, cells per unit length
+    vec4 limit;    // of each axis, the number of the last cell
+    uvec4 shifts;  // of each axis: see kd_part()
+    uvec4 shape;   // x: levels along the longest axis alone, y: pairs of levels, z: triples; w: surplus levels in these
+    uvec4 axes;    // x, y, z: the axes, longest first; w: 32 + shift of the key if photons are split by key, else 0
 };
 
 FN uint kd_ordered(float x) {
@@ -67,7 +68,8 @@ FN vec3 kd_low(IN(KdLarge) n) { return vec3(kd_float(~n.least.x), kd_float(~n.le
 FN vec3 kd_high(IN(KdLarge) n) { return vec3(kd_float(n.greatest.x), kd_float(n.greatest.y), kd_float(n.greatest.z)); }
 FN float kd_coordinate(vec3 p, uint axis) { return axis == 0u ? p.x : (axis == 1u ? p.y : p.z); }
 
-// Levels that a round takes a node of `count` photons down: on average, cells have more than half a leaf, and no more than a leaf.
+// The number of levels that a round splits a node of `count` photons: as few as give cells no more photons than a leaf,
+// on average, but at least KD_GROUP_LEVELS.
 FN uint kd_levels(uint count, uint leaf) {
     uint levels = KD_GROUP_LEVELS;
     while (levels < 24u && (leaf << levels) < count) levels += 1u;
@@ -75,8 +77,8 @@ FN uint kd_levels(uint count, uint leaf) {
 }
 FN bool kd_is_large(uint count, uint leaf) { return count > 2u * leaf; }
 
-// Which axis each level splits: always the one along which cells are longest, as far as this can be said before. That is the longest
-// axis alone until it is less than twice the second, then both in turn, then all three.
+// Chooses the axis that each level splits, from the node's extents: the one along which its cells are longest. That is
+// the longest axis alone until it is less than twice the second, then both in turn, then all three.
 FN void kd_shape(INOUT(KdLarge) n, uint round) {
     vec3 extent = kd_high(n) - kd_low(n);
     uint a = extent.x >= extent.y ? 0u : 1u;
@@ -114,7 +116,7 @@ FN void kd_shape(INOUT(KdLarge) n, uint round) {
         uint bits = axis == a ? alone + pairs + triples : (axis == b ? pairs + triples : triples);
         float cells = float(1u << bits);
         float scale = bits > 0u ? cells / kd_coordinate(extent, axis) : 0.0f;
-        // Where a triple's bits go, where a pair's, where the others.
+        // Shifts in a cell's number: of the triples' bits, of the pairs', of the others.
         uint shift = axis == a ? 2u | ((3u * triples + 1u) << 8u) | ((3u * triples + 2u * pairs) << 16u)
                                : (axis == b ? 1u | ((3u * triples) << 8u) : 0u);
         n.scale.x = axis == 0u ? scale : n.scale.x;
@@ -129,7 +131,7 @@ FN void kd_shape(INOUT(KdLarge) n, uint round) {
     }
 }
 
-// The axis that splits the nodes of a level, 0 at the large node itself.
+// The axis that splits the nodes of a level. Level 0 is the large node itself.
 FN uint kd_level_axis(IN(KdLarge) n, uint level) {
     if (level < n.shape.x) return n.axes.x;
     uint of_pairs = level - n.shape.x;
@@ -138,7 +140,7 @@ FN uint kd_level_axis(IN(KdLarge) n, uint level) {
     return of_triples == 0u ? n.axes.x : (of_triples == 1u ? n.axes.y : n.axes.z);
 }
 
-// Up to 16 bits, a zero after each; up to 10, two.
+// Spread up to 16 bits with one zero after each, and up to 10 bits with two.
 FN uint kd_spread2(uint x) {
     uint v = (x | (x << 8u)) & 0x00ff00ffu;
     v = (v | (v << 4u)) & 0x0f0f0f0fu;
@@ -151,15 +153,16 @@ FN uint kd_spread3(uint x) {
     v = (v | (v << 4u)) & 0x030c30c3u;
     return (v | (v << 2u)) & 0x09249249u;
 }
-// What one axis' coordinate puts into the number of a cell.
+// The bits of a cell's number that come from the coordinate along one axis.
 FN uint kd_part(float x, float origin, float scale, float limit, uint shifts, uint pairs, uint triples) {
     float t = min((x - origin) * scale, limit);
-    uint cell = uint(int(t > 0.0f ? t : 0.0f));  // what is no number lands in cell 0
+    uint cell = uint(int(t > 0.0f ? t : 0.0f));  // NaN maps to cell 0
     return (kd_spread3(cell & ((1u << triples) - 1u)) << (shifts & 31u)) |
            (kd_spread2((cell >> triples) & ((1u << pairs) - 1u)) << ((shifts >> 8u) & 31u)) |
            ((cell >> (triples + pairs)) << (shifts >> 16u));
 }
-// The cell of a photon, among its node's, if photons are split by key; and by position. Each step keeps order, whatever it rounds.
+// The cell of a photon among those of its node: kd_key_cell if photons are split by key, else kd_cell, in which each
+// step is monotonic, even when rounded.
 FN bool kd_by_key(IN(KdLarge) n) { return n.axes.w != 0u; }
 FN uint kd_key_cell(IN(KdLarge) n, uint key) { return (key - ~n.least.w) >> (n.axes.w - 32u); }
 FN uint kd_cell(IN(KdLarge) n, vec3 low, vec3 p) {

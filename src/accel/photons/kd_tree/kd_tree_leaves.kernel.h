@@ -1,4 +1,4 @@
-// Copies the photons of a group of cells, each cell's in the order of their keys, and builds the nodes above.
+// Copies the photons of a group of cells, sorted by key within each cell, and builds the nodes above.
 #include "accel/photons/kd_tree/kd_tree_layout.h"
 
 BUFFER_RO(0, KdArgs, arguments)

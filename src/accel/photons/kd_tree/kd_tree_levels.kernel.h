@@ -1,4 +1,4 @@
-// The next levels of nodes above those that the step before has built.
+// Builds the next levels of nodes, above those that the previous step built.
 #include "accel/photons/kd_tree/kd_tree_layout.h"
 
 BUFFER_RO(0, KdArgs, arguments)
@@ -6,7 +6,7 @@ BUFFER_RO(1, KdLarge, larges)
 BUFFER_RO(2, uint, owners)
 BUFFER_RO(3, uint, starts)
 BUFFER_RW(4, KdNode, nodes)
-BUFFER_RW(5, KdBox, boxes)  // of a node: where its first group's was
+BUFFER_RW(5, KdBox, boxes)  // a node's box is stored at the index of its first group
 #include "accel/photons/kd_tree/kd_tree_join.h"
 
 KERNEL(kd_tree_levels) {
@@ -15,7 +15,7 @@ KERNEL(kd_tree_levels) {
     KdLarge large = larges[args.round == 0u ? 0u : owners[index]];
     uint built = KD_GROUP_LEVELS * args.step;
     uint group = index - large.cells.x / KD_GROUP;
-    // What one invocation joins begins at every 16^step-th group.
+    // Every 16^step-th group is the first of those that one invocation joins.
     if (large.cells.y <= built || (group & ((1u << built) - 1u)) != 0u) return;
     uint levels = min(large.cells.y - built, KD_GROUP_LEVELS);
     uint width = 1u << levels;

@@ -1,13 +1,13 @@
-// Finds the cells that are large. Run twice: first it counts them, their chunks and their own cells; then, when there is memory
-// for all of these, it writes the next round's nodes.
+// Finds the cells that are large. It runs twice: first to count them, their chunks and their own cells; then, when
+// memory for these has been allocated, to write the next round's nodes.
 #include "accel/photons/kd_tree/kd_tree_layout.h"
 
 BUFFER_RO(0, KdArgs, arguments)
 BUFFER_RO(1, KdLarge, larges)
 BUFFER_RO(2, uint, owners)  // large node of each group of cells
 BUFFER_RO(3, uint, starts)
-BUFFER_RW(4, uint, counters)  // large nodes, chunks, cells, most levels; the same again for the second run
-BUFFER_RW(5, uint, links)     // of each large cell, which of the next round's nodes it is
+BUFFER_RW(4, uint, counters)  // large nodes, chunks, cells, most levels; then the same for the second run
+BUFFER_RW(5, uint, links)     // of each large cell, its index among the next round's nodes
 BUFFER_RW(6, KdLarge, next)
 BUFFER_RW(7, uint, next_chunks)  // large node of each chunk
 BUFFER_RW(8, uint, next_owners)

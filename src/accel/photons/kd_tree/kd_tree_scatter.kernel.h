@@ -1,4 +1,4 @@
-// Puts the index of each photon of a large node where its cell's photons go.
+// Writes the index of each photon of a large node to the photon's place within its cell.
 #include "accel/photons/kd_tree/kd_tree_layout.h"
 
 BUFFER_RO(0, KdArgs, arguments)

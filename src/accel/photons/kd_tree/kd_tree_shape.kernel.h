@@ -1,4 +1,4 @@
-// How each large node is split.
+// Chooses how each large node is split.
 #include "accel/photons/kd_tree/kd_tree_layout.h"
 
 BUFFER_RO(0, KdArgs, arguments)

@@ -5,7 +5,7 @@ namespace {
 
 class LinkedList : public ListGrid {
  public:
-    // Link; for the order, the key and link of each.
+    // The atomic links a photon; if chains are sorted, an access to its key and link.
     ConstructionTraffic traffic() const override { return {.accesses = keyed() ? 1.0 : 0.0, .atomics = 1}; }
 
  protected:

@@ -1,4 +1,5 @@
-// Walks the chains of the cells that a query's box meets, several side by side: a chain alone waits for memory at every node.
+// Traverses the chains of the cells that a query's box overlaps, several in turns: one alone would wait for memory at
+// every node.
 #include "core/kernel/gather.h"
 #include "core/kernel/photon_grid.h"
 
@@ -9,7 +10,7 @@ BUFFER_RO(4, PhotonRecord, photons)
 
 CONST uint CHAINS = 8u;
 
-// Cells [first, first + CHAINS) of the box, counted row by row. Returns false where a loop was ended early.
+// Visits cells [first, first + CHAINS) of the box, counted row by row. Returns false if the driver ended a loop early.
 FN bool linked_list_chains(IN(PhotonGrid) g, vec4 q, uvec3 low, uvec3 size, uint first, uint query,
                            INOUT(Gathered) gathered) {
     uint links[CHAINS];
@@ -26,7 +27,7 @@ FN bool linked_list_chains(IN(PhotonGrid) g, vec4 q, uvec3 low, uvec3 size, uint
         links[k] = heads[links[k]];
         if (links[k] == 0u) continue;
         PREFETCH(nodes[links[k] - 1u]);
-        // Chains that end leave their place to the last one.
+        // Only chains that are not empty are kept; later, the last chain replaces one that ends.
         links[alive] = links[k];
         cells[alive] = cells[k];
         alive += 1u;
@@ -49,7 +50,7 @@ FN bool linked_list_chains(IN(PhotonGrid) g, vec4 q, uvec3 low, uvec3 size, uint
             }
             float d2;
             if (!in_range(place_position(place), vec3(q), q.w, d2)) continue;
-            // A bucket may serve two visited cells: each photon counts in its own only.
+            // Two visited cells may share a bucket: each photon counts only in its own cell.
             if (!same_cell(grid_cell(g, place_position(place)), cell)) continue;
             gather_add(gathered, query, photons[photon], d2, 1.0f);
         }

@@ -1,18 +1,18 @@
-// Sorts the chains of many buckets by key, several side by side: a chain alone waits for memory at every node. The kernel has declared
-// `heads`, and `links` as in linked_list_sort.h.
+// Sorts the chains of many buckets by key, several in turns: one alone would wait for memory at every node. Before
+// including this file, a kernel must declare `heads`, and `links` as in linked_list_sort.h.
 #ifndef LAMPYRIS_LINKED_LIST_CHAINS
 #define LAMPYRIS_LINKED_LIST_CHAINS
 
 #include "accel/photons/linked_list/linked_list_sort.h"
 
-CONST uint CHAIN_SPAN = 16u;   // batches of buckets that an invocation sorts
-CONST uint CHAIN_SHORT = 32u;  // links that are sorted by insertion
+CONST uint CHAIN_SPAN = 16u;   // batches of buckets per invocation
+CONST uint CHAIN_SHORT = 32u;  // chains of up to this many links are sorted by insertion
 
-// The chains of an invocation's buckets.
+// Sorts the chains of an invocation's buckets.
 FN void sort_chains(uint index, uint buckets) {
     uint bucket[BATCH];
-    uint rest[BATCH];    // what is still to be sorted
-    uint sorted[BATCH];  // the first link of what is
+    uint rest[BATCH];    // the first link that is still to be sorted
+    uint sorted[BATCH];  // the first link of the sorted ones
     uint lengths[BATCH];
     uint alive = 0u;
     uint opened = 0u;
@@ -20,7 +20,7 @@ FN void sort_chains(uint index, uint buckets) {
     bool open = true;
     uint steps = 0u;
     for (; (open || alive > 0u) && steps < (CHAIN_SHORT + 1u) * CHAIN_SPAN * BATCH; ++steps) {
-        // Chains that ended leave their place to the next that there is.
+        // Chains that are done are replaced by the next ones that are not empty.
         while (open && alive < BATCH) {
             uint b = batch_item(CHAIN_SPAN * index + opened / BATCH, opened % BATCH);
             opened += 1u;

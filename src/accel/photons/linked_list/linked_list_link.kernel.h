@@ -2,11 +2,11 @@
 #include "core/kernel/photon_grid.h"
 #include "core/kernel/span.h"
 
-BUFFER_RO(0, PhotonGrid, grid)  // option: 1 where chains are to be sorted
+BUFFER_RO(0, PhotonGrid, grid)  // option: 1 if chains will be sorted
 BUFFER_RO(1, PhotonRecord, photons)
 BUFFER_RW(2, uint, heads)   // a photon's index plus one; 0 ends a chain
 BUFFER_RW(3, uvec2, links)  // key, link to the next
-BUFFER_RW(4, uvec4, nodes)  // without `links`: position, link to the next
+BUFFER_RW(4, uvec4, nodes)  // if chains will not be sorted: position, link to the next
 
 KERNEL(linked_list_link) {
     PhotonGrid g = grid[0];

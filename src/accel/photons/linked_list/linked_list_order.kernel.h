@@ -1,4 +1,4 @@
-// Sorts each chain by key: exchanges came in no fixed order.
+// Sorts each chain by key, because photons were linked in no fixed order.
 #include "core/kernel/photon_grid.h"
 
 BUFFER_RO(0, PhotonGrid, grid)

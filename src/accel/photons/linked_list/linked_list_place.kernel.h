@@ -1,4 +1,4 @@
-// A node is a photon's position and its link, which now has its final value.
+// Writes the nodes: each photon's position and its link, which now has its final value.
 #include "core/kernel/photon_grid.h"
 
 BUFFER_RO(0, PhotonGrid, grid)

@@ -1,14 +1,15 @@
-// Sorts a chain by key, however long it is. The kernel has declared `links`, to write: of each photon its key, in x, and the link to the
-// next, in y, which is an index plus one, or 0 at the end.
+// Sorts a chain by key, however long it is. Before including this file, a kernel must declare `links`, which this
+// writes: x is a photon's key, y the link to the next photon, which is its index plus one, or 0 at the end.
 #ifndef LAMPYRIS_LINKED_LIST_SORT
 #define LAMPYRIS_LINKED_LIST_SORT
 
-// Merges runs of 1, 2, 4, ... links in place (Knuth, volume 3, 5.2.4), so that a chain of any length takes n log n.
+// Merges runs of 1, 2, 4, ... links in place (Knuth, volume 3, 5.2.4), so that a chain of any length n takes n log n
+// steps.
 FN uint chain_merge_sort(uint first) {
     uint head = first;
     uint width = 1u;
     uint merges = 2u;
-    bool cut = false;  // a loop that the driver ended: the chain is neither sorted nor whole
+    bool cut = false;  // the driver ended a loop early: the chain is neither sorted nor complete
     uint level = 0u;
     for (; level < 32u && merges > 1u; ++level) {
         uint rest = head;

@@ -1,4 +1,4 @@
-// What hash grids with chains share on the host: linked_list, and hash_list, which one thread builds.
+// Host code that the hash grids with chains share: linked_list, and hash_list, which one thread builds.
 #pragma once
 
 #include "core/photons/photon_grid.h"
@@ -14,7 +14,7 @@ class ListGrid : public PhotonMap {
  protected:
     bool keyed() const { return params.order == 0; }  // chains are sorted by their photons' keys
 
-    // Makes the grid and its buffers, with empty chains. Returns the number of these.
+    // Makes the grid and its buffers, with empty chains. Returns the number of chains.
     uint32_t open_chains(const PhotonSet& photons) {
         const size_t count = photons.count;
         kernel::PhotonGrid grid = make_grid(photons, params.cell_size);

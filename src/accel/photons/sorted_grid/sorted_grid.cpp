@@ -10,7 +10,7 @@ class SortedGrid : public PhotonMap {
  public:
     SortedGridParams params;
     PhotonMapCapabilities capabilities() const override { return {.exact = true, .fixed_order = true}; }
-    // Count; start, pair and photon.
+    // The atomic counts; the accesses are to the start, the pair and the photon.
     ConstructionTraffic traffic() const override { return {.accesses = 3, .atomics = 1}; }
 
  protected:

@@ -1,4 +1,4 @@
-// Visits the cells that a query's box meets, row by row: a row's photons lie one after the other.
+// Visits the cells that a query's box overlaps, row by row: the photons of a row are contiguous.
 #include "core/kernel/gather.h"
 #include "accel/photons/sorted_grid/sorted_grid_layout.h"
 
@@ -7,7 +7,8 @@ BUFFER_RO(2, uint, starts)
 BUFFER_RO(3, uvec4, places)
 BUFFER_RO(4, uvec4, fluxes)
 
-// Photons of [begin, end) in range, of cells low.x to high.x of the row (y, z) only: others may share the entries.
+// Gathers the photons of [begin, end) that are in range and in the cells low.x to high.x of the row (low.y, low.z).
+// Other cells may share the table entries.
 FN void sorted_grid_range(IN(PhotonGrid) g, vec4 q, uvec3 low, uvec3 high, uint begin, uint end, uint query,
                           INOUT(Gathered) gathered) {
     uint i = begin;
@@ -38,7 +39,8 @@ KERNEL(sorted_grid) {
     for (; z <= high.z; ++z) {
         uint y = low.y;
         for (; y <= high.y; ++y) {
-            // A row longer than the table comes round to its beginning, but meets each entry once.
+            // A row wraps around at the end of the table. If it is longer than the table, it still visits each entry
+            // once.
             uint first = sorted_grid_entry(g, uvec3(low.x, y, z));
             uint length = min(high.x - low.x + 1u, entries);
             uint before = min(length, entries - first);

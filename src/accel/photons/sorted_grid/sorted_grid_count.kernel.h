@@ -1,4 +1,5 @@
-// How many photons each entry gets, and which of them each photon is (in the order of the machine, which is not fixed).
+// Counts the photons of each entry, and gives each photon its rank among them (in the order of execution, which is not
+// fixed).
 #include "core/kernel/span.h"
 #include "accel/photons/sorted_grid/sorted_grid_layout.h"
 
@@ -19,7 +20,7 @@ KERNEL(sorted_grid_count) {
             entries[span_room(turn, k)] = entry;
             PREFETCH(starts[entry]);
         }
-        // Atomics wait for the stores before them: none lies between.
+        // Atomics wait for earlier stores, so the stores are in a loop of their own.
         for (uint k = 0u; k < BATCH && turn > 0u; ++k) {
             if (span_item(index, turn - 1u, k) < g.count)
                 counts[k] = ATOMIC_ADD_U32(starts[entries[span_room(turn - 1u, k)]], 1u);

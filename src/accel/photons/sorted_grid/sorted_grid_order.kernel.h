@@ -1,16 +1,17 @@
-// Sorts the photons of each entry by key, so that sums have one order, and copies them: positions, and the rest.
+// Sorts the photons of each entry by key, so that sums have a fixed order, and copies them, positions separately from
+// the rest.
 #include "core/kernel/photon.h"
 
 BUFFER_RO(0, PhotonGrid, grid)
 BUFFER_RO(1, PhotonRecord, photons)
 BUFFER_RO(2, uint, starts)
 BUFFER_RO(3, uvec2, pairs)  // key, photon
-BUFFER_RW(4, uvec2, order)  // room to sort the pairs of an entry that has many
+BUFFER_RW(4, uvec2, order)  // scratch memory for sorting entries with many photons
 BUFFER_RW(5, uvec4, places)
 BUFFER_RW(6, uvec4, fluxes)
 #include "core/kernel/sort.h"
 
-CONST uint ENTRY_SHORT = 64u;  // photons that are sorted in registers
+CONST uint ENTRY_SHORT = 64u;  // entries of up to this many photons are sorted in registers
 
 FN void sorted_grid_copy(uint to, uint from) {
     places[to] = photons[from].place;
@@ -19,7 +20,7 @@ FN void sorted_grid_copy(uint to, uint from) {
 
 KERNEL(sorted_grid_order) {
     uint entries = grid[0].entries;
-    // What the invocation after the next will read: this one's own would come too late.
+    // Prefetches for the invocation after the next: for this one's own photons it would be too late.
     for (uint k = 0u; k < BATCH; ++k) {
         uint entry = batch_item(index + 2u, k);
         if (entry >= entries) continue;

@@ -1,4 +1,4 @@
-// Puts (key, photon) where the entry's photons go.
+// Writes (key, photon index) to the photon's place within its table entry.
 #include "core/kernel/photon.h"
 
 BUFFER_RO(0, PhotonGrid, grid)

@@ -28,7 +28,7 @@ class Splat : public PhotonMap {
     PhotonMapCapabilities capabilities() const override {
         return {.exact = true, .fixed_order = true, .needs_queries = true, .sums_only = true, .int64_atomics = true};
     }
-    // Count; start, place and number of a hit point.
+    // The atomic counts; the accesses are to the start, the hit point and its index.
     ConstructionTraffic traffic() const override { return {.accesses = 3, .atomics = 1}; }
 
  protected:
@@ -46,7 +46,8 @@ class Splat : public PhotonMap {
         const uint32_t entries = std::bit_ceil(table_entries(hits, params.table_size));
         record.grid.count = photons.query_count;
         record.grid.entries = entries;
-        // Powers of two, so that scaling rounds nothing: 2^-30 of the mean power is the smallest share, and a sum of 2^33 times it fits.
+        // Powers of two, so that scaling does not round. One unit is about 2^-30 of the mean power, and a sum of 2^33
+        // times the mean power still fits.
         const float mean = photons.mean_power > 0 ? photons.mean_power : 1.0f;
         const float scale = std::ldexp(1.0f, std::clamp(30 - std::ilogb(mean), -100, 100));
         record.scale = glm::vec4(scale, scale, scale, std::ldexp(1.0f, 20));

@@ -1,5 +1,5 @@
-// Each photon adds to the hit points that see it: in fixed point, for atomics come in no fixed order. The consumer's four sums
-// (gather_value) become numbers of 64 bits; splat_finish hands them back.
+// Each photon adds to the sums of the hit points in whose range it is: in fixed point, because atomics happen in no
+// fixed order. The consumer's four sums (gather_value) become 64-bit integers; splat_finish converts them back.
 #include "core/kernel/gather.h"
 #include "accel/photons/splat/splat_layout.h"
 
@@ -10,7 +10,7 @@ BUFFER_RO(4, uint, ids)
 BUFFER_RO(5, PhotonRecord, photons)
 BUFFER_RW(6, uint64, sums)
 
-// A share of a sum, rounded: never negative, and far from where it would overflow.
+// Adds a rounded contribution to a sum. It is never negative, and clamped far below what would overflow.
 FN void splat_add(uint place, float value, float scale) {
     float fixed_point = floor(min(value * scale, 1e15f) + 0.5f);
     if (fixed_point > 0.0f) ATOMIC_ADD_U64(sums[place], uint64(fixed_point));
@@ -46,7 +46,7 @@ KERNEL(splat) {
     for (; z <= high.z; ++z) {
         uint y = low.y;
         for (; y <= high.y; ++y) {
-            // As the sorted grid's rows: see sorted_grid.gather.h.
+            // Rows wrap around as in sorted_grid.gather.h.
             uvec3 from = uvec3(low.x, y, z);
             uint first = splat_entry(g, from);
             uint length = min(high.x - low.x + 1u, g.entries);

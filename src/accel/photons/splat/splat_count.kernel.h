@@ -1,8 +1,8 @@
-// How many hit points each entry gets, and which of them each is.
+// Counts the hit points of each entry, and gives each hit point its rank among them.
 #include "accel/photons/splat/splat_layout.h"
 
 BUFFER_RO(0, SplatRecord, splat)
-BUFFER_RO(1, vec4, hits)  // position, radius; a negative radius sees nothing
+BUFFER_RO(1, vec4, hits)  // position, radius; a negative radius finds nothing
 BUFFER_RW(2, uint, starts)
 BUFFER_RW(3, uvec2, ranks)
 

@@ -1,4 +1,4 @@
-// Hands each query the sums that photons splatted onto it.
+// Passes on the sums that photons splatted onto each query.
 #include "core/kernel/gather.h"
 #include "accel/photons/splat/splat_layout.h"
 

@@ -1,14 +1,14 @@
-// The hit points' grid: as the sorted grid's, rows are hashed, and their cells are neighbours in the table.
+// The grid of hit points. As in the sorted grid, only rows are hashed: neighbours along x are neighbours in the table.
 #ifndef LAMPYRIS_SPLAT
 #define LAMPYRIS_SPLAT
 
 #include "core/kernel/photon_grid.h"
 
-// Of the grid: `count` hit points, and entries, a power of two.
+// In the grid, `count` is the number of hit points, and `entries` is a power of two.
 struct SplatRecord {
     PhotonGrid grid;
-    vec4 scale;  // xyz: of a power to fixed point; w: of a count. Exact powers of two.
-    vec4 reach;  // x: no hit point is farther from a photon that it sees, per coordinate
+    vec4 scale;  // xyz: from power to fixed point; w: from a count. All are powers of two.
+    vec4 reach;  // x: bound for the distance, along each axis, between a hit point and a photon in its range
 };
 
 FN uint splat_entry(IN(PhotonGrid) g, uvec3 cell) {

@@ -1,4 +1,4 @@
-// Puts each hit point where its entry's go.
+// Writes each hit point to its place within its table entry.
 #include "accel/photons/splat/splat_layout.h"
 
 BUFFER_RO(0, SplatRecord, splat)

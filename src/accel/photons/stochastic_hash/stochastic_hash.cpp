@@ -31,10 +31,10 @@ class StochasticHash : public PhotonMap {
         return {
             .stochastic = true, .fixed_order = params.selection != kRace, .int64_atomics = params.selection != kRace};
     }
-    // Count and winner lie on one cache line.
+    // Count and winner are in the same cache line.
     ConstructionTraffic traffic() const override { return {.accesses = 1, .atomics = 1}; }
     std::optional<BucketLoad> bucket_load() const override {
-        if (params.selection == kFlux || buckets_ == 0) return std::nullopt;  // its counters hold weights
+        if (params.selection == kFlux || buckets_ == 0) return std::nullopt;  // its counters hold sums of weights
         std::vector<uint64_t> table(size_t(buckets_) * (params.slots + 1));
         kept("table")->download(table.data(), table.size() * 8);
         BucketLoad load;
@@ -68,13 +68,14 @@ class StochasticHash : public PhotonMap {
         record.grid.capacity = params.slots;
         record.grid.option = record.grid.resolution.w * 0x9e3779b9u + 1u;
         record.race_bits = std::max(11u, uint32_t(std::bit_width(std::max(photons.count, 1u) - 1)));
-        // 1024 for a photon of mean power: weights are whole, and 2^22 times the mean is as bright as a photon gets.
+        // 1024 for a photon of mean power: weights are integers, and those above 4096 times the mean are clamped
+        // (flux_weight).
         if (photons.mean_power > 0) record.flux_scale = 1024.0f / (3.0f * photons.mean_power);
         const size_t bytes = size_t(buckets_) * (params.slots + 1) * 8;
         const BufferHandle table = keep("table", bytes);
         upload("hash", record);
         clear(table, bytes);
-        // A race goes over all numbers of so many bits, those of no photon among them.
+        // A race visits all numbers of `race_bits` bits, including those that are not the index of a photon.
         const uint64_t items = params.selection == kRace ? uint64_t(1) << record.race_bits : photons.count;
         run(kernel_file(), span_count(uint32_t(items)));
     }

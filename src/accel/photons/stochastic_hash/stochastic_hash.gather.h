@@ -1,4 +1,4 @@
-// Looks into the bucket of each cell that a query's box meets; what lies there stands for all that fell into it.
+// Reads the bucket of each cell that a query's box overlaps; the photons kept there represent all that fell into it.
 #include "core/kernel/gather.h"
 #include "accel/photons/stochastic_hash/stochastic_hash_layout.h"
 
@@ -31,7 +31,7 @@ KERNEL(stochastic_hash) {
                     PhotonRecord photon = photons[table[bucket + slot].x];
                     float d2;
                     if (!in_range(photon_position(photon), vec3(q), q.w, d2)) continue;
-                    // A bucket may serve two visited cells: each photon counts in its own only.
+                    // Two visited cells may share a bucket: each photon counts only in its own cell.
                     if (!same_cell(grid_cell(g, photon_position(photon)), uvec3(x, y, z))) continue;
                     float weight = float(total.x) / float(kept);
                     if (by_flux)

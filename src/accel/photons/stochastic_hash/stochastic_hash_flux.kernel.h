@@ -1,5 +1,6 @@
-// The photon with the smallest -log(u) / w stays, which has the probability w / (sum of w in the bucket) (Efraimidis and Spirakis
-// 2006). Positive floats are ordered as their bits are. Two that tie (1 in 10^7 pairs) leave it to the order of storage.
+// The photon with the smallest -log(u) / w stays, so that each has the probability w / (sum of w in the bucket)
+// (Efraimidis and Spirakis 2006). Positive floats have the same order as their bits. Ties (1 in 10^7 pairs) are decided
+// by the order of storage.
 #include "core/kernel/span.h"
 #include "accel/photons/stochastic_hash/stochastic_hash_layout.h"
 

@@ -1,5 +1,5 @@
-// Buckets of the stochastic hash. A bucket is a word of 64 bits that counts, and one for each slot: a photon's index, and above it what
-// it won its place with.
+// Buckets of the stochastic hash. A bucket is a 64-bit counter, and a 64-bit word for each slot: in the lower half a
+// photon's index, in the upper half the rank by which it was selected (unless by a race).
 #ifndef LAMPYRIS_STOCHASTIC_HASH
 #define LAMPYRIS_STOCHASTIC_HASH
 
@@ -9,19 +9,19 @@ CONST uint SELECT_RACE = 0u;
 CONST uint SELECT_PRIORITY = 1u;
 CONST uint SELECT_FLUX = 2u;
 
-// In PhotonGrid: entries are buckets, capacity the slots of each, option the seed of the selection.
+// In PhotonGrid, `entries` is the number of buckets, `capacity` the slots of each, `option` the seed of the selection.
 struct StochasticHash {
     PhotonGrid grid;
     uint selection;    // SELECT_*
-    uint race_bits;    // of the numbers that a race shuffles
-    float flux_scale;  // weights of flux selection per power, 0: all alike
+    uint race_bits;    // number of bits of the indices that a race shuffles
+    float flux_scale;  // weight per power for selection by flux; 0: all weights are equal
     uint unused0;
 };
 
-// A bijection for each seed: no two keys tie, and whom it picks does not depend on who came when.
+// A bijection for each seed, so that no two keys tie. The selection does not depend on the order of arrival.
 FN uint photon_priority(uint key, uint seed) { return hash32(key ^ seed); }
 
-// A permutation of the numbers of `bits` bits (1 to 32), for each seed: each step can be undone.
+// A permutation of the numbers of `bits` bits (1 to 32), for each seed: each step is invertible.
 FN uint permuted(uint x, uint bits, uint seed) {
     uint mask = 0xffffffffu >> (32u - bits);
     uint half_way = (bits + 1u) / 2u;
@@ -34,8 +34,9 @@ FN uint permuted(uint x, uint bits, uint seed) {
     return x ^ (x >> half_way);
 }
 
-// Where a race takes its photons from: blocks of 1024 come shuffled. Each is read from some place on, forwards or backwards: of two of
-// its photons either is as likely to come first, and reads, most of what a race costs, stay in a row.
+// The order in which a race inserts photons: blocks of 1024 are shuffled. Each block is read from a random index on,
+// forwards or backwards, so that of any two of its photons either is equally likely to come first. Reads, the main cost
+// of a race, stay contiguous.
 CONST uint RACE_BLOCK_BITS = 10u;
 FN uint race_block(uint x, uint bits, uint seed) {
     return permuted(x >> RACE_BLOCK_BITS, bits - RACE_BLOCK_BITS, seed);
@@ -45,7 +46,7 @@ FN uint race_photon(uint x, uint block, uint toss) {
     return (block << RACE_BLOCK_BITS) | (((toss >> 31u) == 0u ? toss + x : toss - x) & mask);
 }
 
-// The weight by which flux selection prefers a photon: a whole number, so that sums of them have no order.
+// A photon's weight for selection by flux: an integer, so that sums do not depend on their order.
 FN uint flux_weight(IN(PhotonRecord) photon, float scale) {
     Spectrum power = photon_power(photon);
     float w = (power[0] + power[1] + power[2]) * scale;

@@ -1,5 +1,5 @@
-// Each photon's priority is a hash of its path: the largest of a bucket stay, whoever comes first. One atomic maximum decides, and with
-// several slots what it displaces goes on to the next slot.
+// Each photon's priority is a hash of its key: those of the highest priority in a bucket stay, in whatever order they
+// arrive. One atomic maximum decides; with several slots, the entry that it displaces moves on to the next slot.
 #include "core/kernel/span.h"
 #include "accel/photons/stochastic_hash/stochastic_hash_layout.h"
 

@@ -1,5 +1,6 @@
-// Each photon overwrites the bucket that it falls into, and counts (Hachisuka and Jensen 2010). Who survives is a race, which the last
-// to come wins: photons come in an order that has nothing to do with what they carry, since they were stored as their paths ended.
+// Each photon overwrites the bucket that it falls into, and is counted (Hachisuka and Jensen 2010). The one written
+// last survives. Photons are stored in the order in which their paths ended, which depends on what they carry; so they
+// are inserted in a shuffled order.
 #include "core/kernel/span.h"
 #include "accel/photons/stochastic_hash/stochastic_hash_layout.h"
 

@@ -12,7 +12,7 @@ class UniformGrid : public PhotonMap {
     PhotonMapCapabilities capabilities() const override {
         return {.exact = !drops(), .lossy = drops(), .fixed_order = !drops()};
     }
-    // Count; slot, and for the order its key.
+    // The atomic counts; the accesses are to the slot and its key.
     ConstructionTraffic traffic() const override { return {.accesses = 2, .atomics = 1}; }
 
  protected:
@@ -21,7 +21,7 @@ class UniformGrid : public PhotonMap {
     std::vector<std::string> kernels() const override { return {kStore, kOrder}; }
     bool drops() const { return params.overflow == 1; }
 
-    // Cells grow until there are no more of them than asked for.
+    // Enlarges the cells until there are no more of them than the parameter `cells` allows.
     kernel::PhotonGrid bounded_grid(PhotonSet photons) const {
         const double most = std::clamp(double(photons.count) * double(params.cells), 64.0, double(1u << 28));
         photons.radius = std::max(photons.radius, 1e-20f);

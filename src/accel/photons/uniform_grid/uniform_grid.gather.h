@@ -1,4 +1,5 @@
-// Reads the slots, and the list, of each cell that a query's box meets. Cells are not hashed: none is met twice.
+// Reads the slots, and the list, of each cell that a query's box overlaps. Cells are not hashed, so none is visited
+// twice.
 #include "core/kernel/gather.h"
 #include "accel/photons/uniform_grid/uniform_grid_layout.h"
 

@@ -1,4 +1,4 @@
-// Sorts each cell's photons by key, slots and list together: who came first is not fixed.
+// Sorts each cell's photons by key, slots and list together, because the order of arrival is not fixed.
 #include "accel/photons/uniform_grid/uniform_grid_layout.h"
 
 BUFFER_RO(0, PhotonGrid, grid)
@@ -6,12 +6,12 @@ BUFFER_RO(1, PhotonRecord, photons)
 BUFFER_RW(2, uint, counts)
 BUFFER_RW(3, uvec4, slots)
 BUFFER_RO(4, uint, keys)
-BUFFER_RW(5, uvec4, links)  // the nodes: first key and link, then position and link
+BUFFER_RW(5, uvec4, links)  // the nodes: key and link until they are sorted, then position and link
 #include "accel/photons/linked_list/linked_list_sort.h"
 
-CONST uint CELL_SHORT = 32u;  // photons that are sorted in registers
+CONST uint CELL_SHORT = 32u;  // cells of up to this many photons are sorted in registers
 
-// Of `count` photons, at most CELL_SHORT: those that have no slot are taken from the list.
+// Sorts a cell of `count` photons, at most CELL_SHORT. Those without a slot are read from the list.
 FN void uniform_grid_sort(IN(PhotonGrid) g, uint cell, uint count) {
     uint first = cell * g.capacity;
     uint held = min(count, g.capacity);
@@ -44,7 +44,7 @@ FN void uniform_grid_sort(IN(PhotonGrid) g, uint cell, uint count) {
     counts[2u * cell + 1u] = link;
 }
 
-// Of any number of photons, more than have slots: all become one chain.
+// Sorts a cell of any number of photons greater than the capacity: all become one chain.
 FN void uniform_grid_sort_long(IN(PhotonGrid) g, uint cell) {
     uint first = cell * g.capacity;
     uint head = counts[2u * cell + 1u];

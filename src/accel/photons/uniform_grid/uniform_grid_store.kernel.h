@@ -1,4 +1,4 @@
-// Each photon takes the next slot of its cell, or joins the list of those that found none.
+// Each photon takes the next slot of its cell. If there is none, it joins the list, or is dropped.
 #include "core/kernel/span.h"
 #include "accel/photons/uniform_grid/uniform_grid_layout.h"
 
@@ -6,7 +6,7 @@ BUFFER_RO(0, PhotonGrid, grid)
 BUFFER_RO(1, PhotonRecord, photons)
 BUFFER_RW(2, uint, counts)
 BUFFER_RW(3, uvec4, slots)
-BUFFER_RW(4, uint, keys)    // of the slots' photons
+BUFFER_RW(4, uint, keys)    // of the photons in the slots
 BUFFER_RW(5, uvec4, nodes)  // of photons beyond the capacity: for now, key and link to the next
 BUFFER_RW(6, uint, dropped)
 
@@ -22,7 +22,7 @@ KERNEL(uniform_grid_store) {
             cells[span_room(turn, k)] = cell;
             PREFETCH(counts[2u * cell]);
         }
-        // Atomics wait for the stores before them: none lies between.
+        // Atomics wait for earlier stores, so the stores are in a loop of their own.
         for (uint k = 0u; k < BATCH && turn > 0u; ++k) {
             if (span_item(index, turn - 1u, k) >= g.count) continue;
             uint cell = cells[span_room(turn - 1u, k)];
