@@ -60,7 +60,8 @@ Film::Film(Device& device, const Scene& scene, const std::array<int, 4>& crop)
     : window_(crop[0], crop[1], crop[2] - crop[0], crop[3] - crop[1]),
       full_width_(scene.width()),
       full_height_(scene.height()) {
-    // The film's copy on the device, the one here, and the image with its channels (14 floats a pixel).
+    // The film's copy on the device, the one here, and the image with its channels (14 floats a pixel). Not counted: the
+    // two copies of FilmBias and the six more channels if attach_bias is called later (88 bytes a pixel).
     const uint64_t needed = uint64_t(pixel_count()) * (2 * sizeof(kernel::FilmPixel) + 14 * sizeof(float));
     if (needed > machine_memory())
         throw MachineError(
