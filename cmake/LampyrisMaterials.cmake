@@ -8,9 +8,9 @@
 #   COST              declares the effect, and describes its cost in a few words
 #   RARELY            few scenes have it: the branch to its functions is compiled as unlikely
 #   SCATTERS_AS       the prefix of the functions that evaluate and sample it, which materials of neighbouring ranks may share
-#   ESTIMATES         these two give estimates, and are told which are wanted (`jobs`)
+#   ESTIMATES         these functions return random estimates, and take the set of those wanted (`jobs`)
 #   SCATTERS_NOTHING  it has a number, but no functions in kernels
-cmake_policy(VERSION 3.25)  # as a script, too (below)
+cmake_policy(VERSION 3.25)  # needed when this runs as a script (below)
 set(LAMPYRIS_MATERIALS_DIR ${CMAKE_CURRENT_LIST_DIR}/../src/materials)
 set(LAMPYRIS_FIRST_MATERIAL_EFFECT 32)  # bits below are numbered by core/kernel/effects.h
 

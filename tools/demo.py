@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Renders the demo scene by two methods at equal time on both backends, and writes a page that compares them.
+"""Renders the demo scene by two methods in equal time on both backends, and writes a page that compares them.
 
-Run by ./dev demo; needs nothing but Python's standard library and the program.
+Run by ./dev demo; needs only Python's standard library and the program.
 """
 
 import argparse
@@ -29,7 +29,7 @@ def call(program, *arguments, capture=False):
         [program, *map(str, arguments)], stdout=subprocess.PIPE if capture else None, text=True, check=False
     )
     if done.returncode:
-        sys.exit(done.returncode)  # the program has said why
+        sys.exit(done.returncode)  # the program has printed the reason
     return done.stdout
 
 
@@ -64,7 +64,7 @@ def compare(program, folder, image, reference, error_image):
 
 
 def rows(stats, errors):
-    """The comparison: (what, [a value for each run], how it is meant)."""
+    """The comparison: (name, [a value for each run], explanation)."""
     runs = [stats[run] for run in RUNS]
     against = [errors[run] for run in RUNS]
     setup = [sum(run["setup_s"].values()) for run in runs]
@@ -151,7 +151,7 @@ def main():
     folder.mkdir(parents=True, exist_ok=True)
     budget = ["--passes", options.passes] if options.passes else ["--time", f"{options.seconds}s"]
 
-    # First, because it compiles kernels that the others use again.
+    # This comes first, because it compiles kernels that the other runs reuse.
     print(
         f"Rendering {AGREEMENT_PASSES} passes of sppm on each backend; Vulkan compiles its shaders at first", flush=True
     )

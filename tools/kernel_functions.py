@@ -57,7 +57,7 @@ def headers() -> list[Path]:
 
 
 def title(path: Path) -> str:
-    """The header as a kernel includes it; for those in core/kernel, its name alone."""
+    """The path by which a kernel includes the header; for those in core/kernel, only its name."""
     if path.parent == KERNELS:
         return path.name
     return str(path.relative_to(MATERIALS.parent)).removesuffix(".in")
