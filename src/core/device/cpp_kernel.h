@@ -1,4 +1,4 @@
-// The C++ side of the kernel dialect: GLSL's types and functions from GLM, by name. Included by generated units only.
+// The C++ side of the kernel dialect: GLSL's types and functions, from GLM. Only generated files include it.
 #pragma once
 
 #include "core/device/kernel_registry.h"
@@ -42,7 +42,7 @@ inline uint bitfieldReverse(uint x) {
     x = ((x & 0x33333333u) << 2u) | ((x & 0xccccccccu) >> 2u);
     return ((x & 0x55555555u) << 1u) | ((x & 0xaaaaaaaau) >> 1u);
 }
-// Two at once, in one register of 64 bits.
+// Both at once, in one 64-bit register.
 inline uvec2 bitfieldReverse(uvec2 v) {
     uint64_t x = __builtin_bswap64((uint64_t(v.x) << 32u) | v.y);
     x = ((x & 0x0f0f0f0f0f0f0f0fu) << 4u) | ((x >> 4u) & 0x0f0f0f0f0f0f0f0fu);
@@ -50,7 +50,7 @@ inline uvec2 bitfieldReverse(uvec2 v) {
     x = ((x & 0x5555555555555555u) << 1u) | ((x >> 1u) & 0x5555555555555555u);
     return uvec2(uint(x), uint(x >> 32u));
 }
-// GLM's is `x >= 0 ? x : -x`: a comparison and a choice where one bit has to be cleared.
+// GLM's abs is `x >= 0 ? x : -x`: a comparison and a selection, although clearing one bit suffices.
 inline float abs(float x) { return __builtin_fabsf(x); }
 inline int abs(int x) { return x < 0 ? -x : x; }
 inline vec2 abs(vec2 v) { return vec2(abs(v.x), abs(v.y)); }

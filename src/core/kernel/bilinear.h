@@ -9,7 +9,7 @@ struct Patch {
     vec3 p11;
 };
 
-// The index, relative to the geometry's first vertex, of each corner: p00, p10, p01, p11.
+// The index of each corner (p00, p10, p01, p11), relative to the geometry's first vertex.
 FN uvec4 patch_corners(IN(GeometryRecord) g, uint primitive) {
     uint first = g.first_index + 4u * primitive;
     return uvec4(indices[first], indices[first + 1u], indices[first + 2u], indices[first + 3u]);
@@ -35,10 +35,10 @@ FN vec3 patch_error(IN(Patch) b) {
     return gamma_bound(8.0f) * max(max(abs(b.p00), abs(b.p10)), max(abs(b.p01), abs(b.p11)));
 }
 
-// How far outside of [0, 1] a computed u or v still counts as the edge: neighbouring patches leave no crack.
+// A computed u or v this far outside of [0, 1] still counts as the edge, so that neighbouring patches leave no crack.
 CONST float PATCH_EDGE = 2e-6f;
 
-// t and v on the patch's line of constant u; keeps the nearer hit.
+// Intersects the ray with the patch's line of constant u; keeps the nearer hit.
 FN void patch_candidate(vec3 a00, vec3 a10, vec3 a01, vec3 a11, vec3 d, float u, float t_error, INOUT(float) t,
                         INOUT(vec2) uv) {
     if (!(u >= -PATCH_EDGE && u <= 1.0f + PATCH_EDGE)) return;
@@ -54,8 +54,9 @@ FN void patch_candidate(vec3 a00, vec3 a10, vec3 a01, vec3 a11, vec3 d, float u,
     float t_here = dot3(m, along) / n2;
     if (!(v >= -PATCH_EDGE && v <= 1.0f + PATCH_EDGE)) return;
     if (!(t_here > t_error && t_here < t)) return;
-    // The tangent plane at the hit must lie ahead, too. Of a ray that leaves a plane patch at a grazing angle the equation for
-    // u has nothing but rounding errors for coefficients, and the line found is one that the ray passes over.
+    // The tangent plane at the hit must be ahead of the ray, too. For a ray that leaves a plane patch at a grazing
+    // angle, the coefficients of the equation for u are only rounding errors, and the line found is one that the ray
+    // passes above.
     float clamped_v = clamp(v, 0.0f, 1.0f);
     vec3 normal = cross3(lerp3_of(clamped_v, a10 - a00, a11 - a01), along);
     if ((dot3(from + clamped_v * along, normal) > 0.0f) != (dot3(d, normal) > 0.0f)) return;
@@ -63,11 +64,12 @@ FN void patch_candidate(vec3 a00, vec3 a10, vec3 a01, vec3 a11, vec3 d, float u,
     uv = vec2(clamped_u, clamped_v);
 }
 
-// The first hit with 0 < t < t_max, and its parameters. The ray meets the patch where it meets a line of constant u: a
-// quadratic equation in u (A. Reshetov, "Cool Patches: A Geometric Approach to Ray/Bilinear Patch Intersections", Ray
-// Tracing Gems, 2019), here about the ray's origin so that patches far from the world's origin lose nothing.
+// The first hit with 0 < t < t_max, and its parameters. The ray hits the patch where it hits a line of constant u,
+// which gives a quadratic equation in u (A. Reshetov, "Cool Patches: A Geometric Approach to Ray/Bilinear Patch
+// Intersections", Ray Tracing Gems, 2019). Positions are relative to the ray's origin, so that patches far from the
+// world's origin lose no precision.
 //
-// Hits up to t_min do not count, nor those within rounding of the ray's origin.
+// Hits at or below t_min do not count, nor do those within the rounding error of the ray's origin.
 FN bool bilinear_hit_beyond(uint geometry, uint primitive, vec3 o, vec3 d, float t_min, float t_max, OUT(float) t,
                             OUT(vec2) uv) {
     Patch b = load_patch(geometry, primitive);
@@ -90,7 +92,7 @@ FN bool bilinear_hit_beyond(uint geometry, uint primitive, vec3 o, vec3 d, float
     if (!(discriminant >= 0.0f)) return false;
     float root = sqrt(discriminant);
     float q = -0.5f * (linear < 0.0f ? linear - root : linear + root);
-    // The origin's distance within which a hit is the point that the ray starts from.
+    // A hit at or below t_error is the point at which the ray starts.
     float extent = max(max(max_component(abs(b.p00)), max_component(abs(b.p10))),
                        max(max_component(abs(b.p01)), max_component(abs(b.p11))));
     float t_error = max(t_min, gamma_bound(10.0f) * (max_component(abs(o)) + extent) / length_of(d));
@@ -107,7 +109,7 @@ FN bool bilinear_hit(uint geometry, uint primitive, vec3 o, vec3 d, float t_max,
     return bilinear_hit_beyond(geometry, primitive, o, d, 0.0f, t_max, t, uv);
 }
 
-// Fills everything of the surface at the patch's own uv but distance, ids, material and light.
+// Fills in the surface at the patch's own uv, except for distance, ids, material and light.
 FN void bilinear_fill(uint geometry, uint primitive, vec2 uv, INOUT(Surface) s) {
     GeometryRecord g = geometries[geometry];
     Patch b = load_patch(geometry, primitive);
@@ -120,7 +122,7 @@ FN void bilinear_fill(uint geometry, uint primitive, vec2 uv, INOUT(Surface) s) 
     if (!(max_component(abs(normal)) > 0.0f)) normal = cross3(b.p11 - b.p00, b.p01 - b.p10);  // two corners coincide
     float normal_length = length_of_area(normal);
     s.ng = normal_length > 0.0f ? normal / normal_length : vec3(0.0f, 0.0f, 1.0f);
-    // Change of the normal: derivative of the unit cross product, the mixed derivative being the patch's twist.
+    // Derivatives of the normal, a unit cross product; the patch's mixed derivative is its twist.
     s.dndu = vec3(0.0f);
     s.dndv = vec3(0.0f);
     bool flip = (g.flags & GEOMETRY_FLIP) != 0u;
@@ -133,7 +135,7 @@ FN void bilinear_fill(uint geometry, uint primitive, vec2 uv, INOUT(Surface) s) 
     s.ng = sign * s.ng;
     s.ns = s.ng;
     s.uv = uv;
-    // du/ds, dv/ds, ...: what vertex uvs (s, t) make of the patch's own derivatives.
+    // du/ds, dv/ds, ...: they convert the patch's own derivatives to those with respect to the vertex uvs (s, t).
     float du_ds = 1.0f;
     float dv_ds = 0.0f;
     float du_dt = 0.0f;
@@ -180,7 +182,7 @@ FN void bilinear_fill(uint geometry, uint primitive, vec2 uv, INOUT(Surface) s) 
     s.dndv = dndu * du_dt + dndv * dv_dt;
 }
 
-// The surface where a ray that hits the patch meets it first; false (and s unchanged) where it does not.
+// The ray's first hit on the patch; false (and s unchanged) if there is none.
 FN bool bilinear_surface(uint geometry, uint primitive, vec3 o, vec3 d, INOUT(Surface) s) {
     float t;
     vec2 uv;

@@ -1,11 +1,11 @@
-// Scattering at surfaces: what a material does with light, as evaluation, density and sampling over all kinds. The materials
-// are in src/materials; from their folders the build writes what calls them (src/materials/dispatch.h.in).
+// Scattering at surfaces: evaluates, samples, and computes the density of a material's BSDF. The materials are in
+// src/materials; the build generates the dispatch over them (src/materials/dispatch.h.in).
 //
-// docs/kernels-scattering.md says which paper each model is from, and where it departs from pbrt's.
+// docs/kernels-scattering.md names the paper of each model, and its differences from pbrt's.
 #ifndef LAMPYRIS_KERNEL_BSDF
 #define LAMPYRIS_KERNEL_BSDF
 
-// GLSL wants this order.
+// GLSL needs this order.
 // clang-format off
 #include "core/kernel/spectrum.h"
 #include "core/kernel/sampling.h"
@@ -30,14 +30,14 @@ FN float bsdf_pdf(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport) {
     return pdf;
 }
 
-// A direction wi, from three uniform numbers; false where nothing is scattered (the path ends).
+// Samples a direction wi with three uniform random numbers; false if nothing is scattered (the path ends).
 FN bool bsdf_sample(IN(Bsdf) b, vec3 wo, float uc, vec2 u, uint transport, OUT(BsdfSample) s) {
     float density;
     return bsdf_sample_jobs(b, wo, uc, u, transport, 0u, s, density);
 }
 
-// The same, with the density of the direction as multiple importance sampling wants it, which s.pdf is not where it is
-// proportional; of a delta lobe, the probability of choosing it.
+// The same, and also computes the direction's density for multiple importance sampling, which s.pdf is not if it is
+// only proportional to the density. For a delta lobe it is the probability of choosing that lobe.
 FN bool bsdf_sample_density(IN(Bsdf) b, vec3 wo, float uc, vec2 u, uint transport, OUT(BsdfSample) s,
                             OUT(float) density) {
     return bsdf_sample_jobs(b, wo, uc, u, transport, LAYERED_DENSITY, s, density);

@@ -1,5 +1,5 @@
-// What scattering functions take and give. All directions are unit vectors in the local shading frame (z = shading
-// normal) that point away from the surface.
+// Types of the scattering functions. All directions are unit vectors in the local shading frame (z = shading normal)
+// that point away from the surface.
 #ifndef LAMPYRIS_KERNEL_BSDF_TYPES
 #define LAMPYRIS_KERNEL_BSDF_TYPES
 
@@ -8,33 +8,33 @@ CONST uint LOBE_TRANSMISSION = 2u;
 CONST uint LOBE_DIFFUSE = 4u;
 CONST uint LOBE_GLOSSY = 8u;
 CONST uint LOBE_SPECULAR = 16u;
-CONST uint LOBE_BOTH_SIDES = 3u;  // reflection and transmission: an unrestricted choice
+CONST uint LOBE_BOTH_SIDES = 3u;  // reflection and transmission: the choice is unrestricted
 
 // What an eye path of photon mapping does at a surface.
 CONST uint VISIBLE_FOLLOW = 0u;  // sample a direction and go on: (nearly) specular
 CONST uint VISIBLE_GATHER = 1u;  // estimate the reflected radiance from photons here
-CONST uint VISIBLE_SPLIT = 2u;   // a smooth coat over something rough: one or the other, by chance
+CONST uint VISIBLE_SPLIT = 2u;   // a smooth coat over a rough base: one of the two, by random choice
 
-// A material at a point: every parameter is resolved. bsdf_of_record makes one; which member means what is the material's own
-// business. Those of the tree use them so:
+// A material at a point, with all parameters evaluated; created by bsdf_of_record. Each material decides what the
+// members mean; those in this source tree use them as follows.
 struct Bsdf {
     uint kind;        // MATERIAL_*, never MATERIAL_MIX
     uint flags;       // MATERIAL_ENERGY_COMPENSATION, MATERIAL_EXACT_COAT
     Spectrum color0;  // diffuse, diffuse transmission, coated diffuse: reflectance; conductors: n of n + ik
     Spectrum color1;  // diffuse transmission: transmittance; conductors: k
     Spectrum albedo;  // coats: single-scattering albedo of the medium between the layers
-    vec2 alpha;       // roughness; of coats: of the interface. From ggx_alpha: zero where it is smooth
+    vec2 alpha;       // roughness (coats: of the interface) from ggx_alpha: zero if smooth
     vec2 alpha_base;  // coated conductor: roughness of the metal
-    float eta;        // dielectrics and coats: index on the side of -z over that of +z
+    float eta;        // dielectrics and coats: refractive index on the -z side over that on the +z side
     float thickness;  // coats, in mean free paths of the medium (its extinction is 1, as in pbrt)
     float g;          // coats: asymmetry of the medium's phase function
-    uint max_depth;   // coats: most events of a random walk
+    uint max_depth;   // coats: maximum number of events of a random walk
     uint samples;     // coats: random walks per evaluation
-    uint walk;        // coats: which walks; 0 unless the same two directions are asked about again and again
-    float inner;      // smooth clear coats over diffuse bases: inner reflectance (clear_coat.h); else negative
+    uint walk;        // coats: seed of the walks; not 0 if the same two directions are evaluated repeatedly
+    float inner;  // smooth clear coats over diffuse bases: inner reflectance (clear_coat.h); else negative
 };
 
-// Nothing that scatters.
+// A Bsdf that scatters nothing.
 FN Bsdf no_bsdf() {
     Bsdf b;
     b.kind = MATERIAL_INTERFACE;
@@ -55,15 +55,17 @@ FN Bsdf no_bsdf() {
 }
 
 // ---- Parameters from a record ----------------------------------------------------------------------------------------
-// These bound every parameter to where the models' functions are finite: scenes may ask for anything.
+// These clamp every parameter to the range in which the models' functions are finite, because scenes may contain any
+// value.
 
 FN Spectrum bounded_share(Spectrum s) { return clamp_each(s, 0.0f, 1.0f); }
 FN Spectrum bounded_index(Spectrum s) { return clamp_each(s, 0.0f, 1e4f); }
-// A relative index; pbrt reads 0 as 1.
+// A relative refractive index; 0 means 1, as in pbrt.
 FN float bounded_eta(float eta) { return eta > 0.0f ? clamp(eta, 0.01f, 100.0f) : 1.0f; }
 
 FN vec2 roughness_alpha(float u, float v, bool remap) { return remap ? vec2(safe_sqrt(u), safe_sqrt(v)) : vec2(u, v); }
-// The roughness of a record, remapped where it asks for that, and as the GGX functions need it.
+// A record's roughness, remapped to alpha if its flags say so. record_alpha also bounds it as the GGX functions need
+// it.
 FN vec2 record_roughness(IN(MaterialRecord) m) {
     return roughness_alpha(m.roughness_u, m.roughness_v, (m.flags & MATERIAL_REMAP) != 0u);
 }
@@ -94,8 +96,8 @@ FN BsdfSample no_bsdf_sample() {
     return s;
 }
 
-// Directions flatter than this neither scatter nor are scattered into: a float's direction is not known better, and no
-// quotient by a cosine overflows.
+// Nothing is scattered from or into directions with a smaller cosine: a float does not represent such a direction any
+// better, and quotients by a cosine cannot overflow.
 CONST float MIN_COSINE = 1e-6f;
 
 FN bool is_grazing(vec3 w) { return !(abs(w.z) >= MIN_COSINE); }

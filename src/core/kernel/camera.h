@@ -2,8 +2,8 @@
 #ifndef LAMPYRIS_KERNEL_CAMERA
 #define LAMPYRIS_KERNEL_CAMERA
 
-// The primary ray through `raster` (pixels of the full image, the upper left corner is (0, 0)); u_lens chooses the point on
-// the lens. Perspective rays start at the lens, orthographic ones on the plane z = 0 of camera space.
+// The primary ray through `raster` (in pixels of the full image; (0, 0) is its upper left corner). u_lens chooses the
+// point on the lens. Perspective rays start at the lens, orthographic ones on the plane z = 0 of camera space.
 FN Ray camera_ray(vec2 raster, vec2 u_lens) {
     CameraRecord camera = scene[0].camera;
     vec3 origin = vec3(0.0f);
@@ -28,34 +28,36 @@ FN Ray camera_ray(vec2 raster, vec2 u_lens) {
     return ray;
 }
 
-// Filter tables are floats among the integers of `distributions`.
+// Filter tables are floats, stored as bits among the integers of `distributions`.
 FN float filter_number(uint at) { return uintBitsToFloat(distributions[at]); }
 
-// One coordinate of a smooth filter, from its table (layout.h, CameraRecord.data). `sign` is multiplied by the filter's.
+// Samples one coordinate of a smooth filter with its table (layout.h, CameraRecord), and multiplies `sign` by the
+// filter's sign.
 //
-// The filter is taken as linear between the table's nodes; its absolute value is sampled exactly (inside a cell by the
-// inverse of a quadratic CDF), for u below 1/2 on the negative side, so that stratified u stay stratified.
+// The filter is linear between the table's nodes. Its absolute value is sampled exactly, by inverting the quadratic CDF
+// within a cell. u below 1/2 gives negative coordinates, so that stratified u stay stratified.
 FN float sample_filter_table(uint table, uint count, float radius, float u, INOUT(float) sign) {
     float centred = 2.0f * u - 1.0f;
     float share = min(abs(centred), ONE_MINUS_EPSILON);
     uint cdf = table + count + 1u;
-    // From the guide's interval on; the first step, which chance decides, without a branch.
+    // Searches from the guide's interval on. The first step has no branch, because its outcome is unpredictable.
     uint cell = uint(filter_number(cdf + count + 2u + uint(share * float(count))));
     cell += uint(cell + 1u < count && filter_number(cdf + cell + 1u) <= share);
     while (cell + 1u < count && filter_number(cdf + cell + 1u) <= share) cell += 1u;
     float a = filter_number(table + cell);
     float b = filter_number(table + cell + 1u);
     if (a + b < 0.0f) sign = -sign;
-    // sample_linear at the share's place in the interval, (share - cdf) / (a + b): the nodes are scaled to make it so.
+    // sample_linear at the share's relative position in the interval, (share - cdf) / |a + b|: the nodes are scaled for
+    // this.
     float rest = share - filter_number(cdf + cell);
     float root = safe_sqrt(a * a + rest * (abs(b) - abs(a)));
     float x = min(rest / max(abs(a) + root, 1e-20f), ONE_MINUS_EPSILON);
     return copy_sign((float(cell) + x) * (radius / float(count)), centred);
 }
 
-// Offset from the pixel's centre, in pixels, with density |filter| / integral of |filter|. The weight's expected value is 1;
-// it is negative in the filter's negative lobes, and 1 everywhere for filters without (Ernst et al. 2006, "Filter Importance
-// Sampling").
+// Offset from the pixel's centre, in pixels, with density |filter| / integral of |filter|. The weight's expected value
+// is 1. It is negative in the filter's negative lobes, and 1 everywhere for filters without them (Ernst et al. 2006,
+// "Filter Importance Sampling").
 FN vec2 pixel_filter_sample(vec2 u, OUT(float) weight) {
     CameraRecord camera = scene[0].camera;
     weight = 1.0f;

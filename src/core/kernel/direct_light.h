@@ -2,8 +2,9 @@
 #ifndef LAMPYRIS_KERNEL_DIRECT_LIGHT
 #define LAMPYRIS_KERNEL_DIRECT_LIGHT
 
-// `weighted`: by multiple importance sampling with the directions that bsdf_sample chooses; a path that takes no such sample
-// wants the whole. `medium`: through which the vertex was reached, at the surface s. u_choice and u: bits of random numbers.
+// `weighted`: multiply by the weight of multiple importance sampling against bsdf_sample; paths that do not also sample
+// the BSDF need the full value. `medium`: the medium through which the vertex at s was reached. u_choice and u: bits of
+// random numbers.
 FN Spectrum direct_light(IN(Surface) s, IN(Vertex) v, uint medium, uint u_choice, uvec2 u, bool weighted) {
     LightSample light;
     if (!light_sample(s.position, u_choice, u, light)) return Spectrum(0.0f);

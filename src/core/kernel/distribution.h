@@ -1,21 +1,22 @@
-// Choices in proportion to weights: of a light, of a row and a texel of an image of light.
+// Discrete sampling in proportion to weights: of a light, or of a row and a texel of an infinite light's image.
 //
-// A CDF is made of integers from 0 to CDF_TOTAL (layout.h), so that the probability of an interval, the difference of its two
-// numbers, is exactly how often the interval is found, whatever stands beside it: differences of floats lose intervals below
-// 2^-24, and misstate those near it. The inverse of a CDF keeps stratified numbers stratified, which an alias table does not
-// (docs/decisions/integer-cdfs.md).
+// A CDF consists of integers from 0 to CDF_TOTAL (layout.h), so that the difference of an interval's two numbers is
+// exactly the probability of choosing it, wherever it is in the CDF. Differences of floats lose intervals with a
+// probability below 2^-24, and are inaccurate near that. Inverting a CDF keeps stratified numbers stratified, which an
+// alias table does not (docs/decisions/integer-cdfs.md).
 #ifndef LAMPYRIS_KERNEL_DISTRIBUTION
 #define LAMPYRIS_KERNEL_DISTRIBUTION
 
-// Rounded once, alike on every device: below 2^24 conversions are exact.
+// Rounds only once, and so equally on every device: conversions of integers below 2^24 are exact.
 FN float float_of_uint(uint x) { return float(x >> 8u) * 256.0f + float(x & 0xffu); }
 
 // 32 random bits as a number below CDF_TOTAL.
 FN uint cdf_number(uint bits) { return bits >> 1u; }
 
-// The interval of a CDF of `count` intervals (count + 1 numbers in `distributions`) that a number below CDF_TOTAL falls into.
+// Finds the interval that contains `number` (below CDF_TOTAL) in a CDF of `count` intervals (count + 1 numbers in
+// `distributions`).
 FN uint find_interval(uint first, uint count, uint number) {
-    // Without a branch on the comparison, which no processor could foresee.
+    // No branch on the comparison, because its result is unpredictable.
     uint low = 0u;
     uint size = count;
     while (size > 1u) {
@@ -31,16 +32,16 @@ FN float interval_share(uint at) {
     return float_of_uint(distributions[at + 1u] - distributions[at]) * 4.656612873077393e-10f;  // 1 / CDF_TOTAL
 }
 
-// The number's place in its interval, in [0, 1). `fraction` in [0, 1) is its place between one integer and the next: in an
-// interval of few integers it is most of what is known.
+// The number's relative position in its interval, in [0, 1). `fraction`, in [0, 1), refines the number beyond its
+// integer: in an interval of few integers, most of the position depends on it.
 FN float place_in_interval(uint at, uint number, float fraction) {
     uint low = distributions[at];
     return min((float_of_uint(number - low) + fraction) / float_of_uint(distributions[at + 1u] - low),
                ONE_MINUS_EPSILON);
 }
 
-// A piecewise constant density on the unit square (layout.h, LightRecord.distribution): a texel, and a place on the
-// square that is uniform in it.
+// A sample of a piecewise constant density on the unit square (layout.h, LightRecord.distribution): a texel, and a
+// point of the square that is uniform within it.
 struct TexelSample {
     uint x;
     uint y;
@@ -53,7 +54,8 @@ FN TexelSample sample_image_distribution(uint offset, uint width, uint height, u
     s.y = find_interval(offset, height, number.y);
     uint row = offset + height + 1u + s.y * (width + 1u);
     s.x = find_interval(row, width, number.x);
-    // The fraction of the one comes from the bits of the other, which are random even where an interval has a single integer.
+    // The fraction of each coordinate comes from the bits of the other one, which are random even if an interval has a
+    // single integer.
     s.st = vec2((float(s.x) + place_in_interval(row + s.x, number.x, unit_float(hash32(bits.y)))) / float(width),
                 (float(s.y) + place_in_interval(offset + s.y, number.y, unit_float(hash32(bits.x)))) / float(height));
     return s;

@@ -1,11 +1,11 @@
-// Every effect that a scene may call for, written once: kernels ask HAS(EFFECT_X), the host computes the set from the
-// scene description (core/device/effects.h), and what is not in the set is compiled out (Vulkan) or out of the variant (CPU).
+// All effects that a scene may need. Kernels test HAS(EFFECT_X); the host computes the set from the scene description
+// (core/device/effects.h). Code for other effects is not compiled (Vulkan), or not in the chosen variant (CPU).
 #ifndef LAMPYRIS_KERNEL_EFFECTS
 #define LAMPYRIS_KERNEL_EFFECTS
 
 #include "materials/list.h"
 
-// E(constant, bit, name, what it costs). Those of materials are declared in their folders, and have bits from 32 on.
+// E(constant, bit, name, its cost). Materials declare theirs in their folders, with bits from 32 on.
 #define LAMPYRIS_EFFECTS(E)                                                                                           \
     E(EFFECT_SMOOTH_NORMALS, 0, "smooth-normals", "interpolates vertex normals at every hit")                         \
     E(EFFECT_QUADRICS, 1, "quadrics", "intersects spheres, disks and cylinders exactly")                              \
@@ -30,14 +30,15 @@
     E(EFFECT_ANISOTROPIC, 26, "anisotropic-roughness", "a tangent from the texture coordinates at every hit")         \
     E(EFFECT_MEDIUM, 27, "medium-absorption", "three exponentials per ray and shadow ray in a medium that absorbs")
 
-// An EffectSet has 64 bits: one integer in C++, two in GLSL, where integers of 64 bits are an extension.
+// An EffectSet has 64 bits: one integer in C++, two in GLSL, where 64-bit integers are an extension.
 #define LAMPYRIS_EFFECT_CONSTANT(constant, bit, name, cost) CONST EffectSet constant = EFFECT_BIT(bit);
 LAMPYRIS_EFFECTS(LAMPYRIS_EFFECT_CONSTANT)
 #undef LAMPYRIS_EFFECT_CONSTANT
 #define LAMPYRIS_OR_EFFECT(constant, bit, name, cost) | constant
 CONST EffectSet kAllEffects = EffectSet(0u) LAMPYRIS_EFFECTS(LAMPYRIS_OR_EFFECT);
 #undef LAMPYRIS_OR_EFFECT
-// Sets that C++ kernels are built for (CPU_EFFECTS of lampyris_kernel): a scene runs on the smallest one that has all of its effects.
+// Sets for which C++ kernels are built (KERNEL_CPU_VARIANTS): a scene runs on the smallest one that has all of its
+// effects.
 CONST EffectSet kDiffuseEffects = EFFECT_SMOOTH_NORMALS | EFFECT_AREA_LIGHTS;
 CONST EffectSet kGlassEffects =
     kDiffuseEffects | EFFECT_QUADRICS | EFFECT_QUADRIC_LIGHTS | EFFECT_CONDUCTOR | EFFECT_DIELECTRIC | EFFECT_ROUGH;

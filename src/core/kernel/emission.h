@@ -1,23 +1,24 @@
-// Photons leave lights: a light by its power, then a ray whose density follows what the light sends.
+// Emission of photons: chooses a light in proportion to its power, then samples a ray that leaves it.
 //
-// Power is what the photon stands for if it were the only one: radiance times cosine, or intensity, over the density of the
-// choice (W per channel). Divide by the number of photons emitted.
+// The power is that of a single photon: radiance times cosine, or intensity, over the density of the choice (W per
+// channel). Divide it by the number of photons emitted.
 #ifndef LAMPYRIS_KERNEL_EMISSION
 #define LAMPYRIS_KERNEL_EMISSION
 
 struct Emission {
-    vec3 origin;  // beyond the rounding error of a light's surface
+    vec3 origin;  // outside of the rounding error of the light's surface
     vec3 direction;
     Spectrum power;
     uint light;
-    uint medium;  // in which it starts
+    uint medium;  // in which the photon starts
 };
 
-// The numbers that a photon's start takes: choice of the light, of the side that emits, place, direction.
+// Random numbers that a photon's start uses: one for the light, one for the side that emits, two for the position, two
+// for the direction.
 CONST uint EMISSION_DIMENSIONS = 6u;
 
-// Where the disk lies through which light from infinitely far enters the scene, as pbrt's: as wide as the bounding sphere,
-// touching it.
+// A point on the disk through which light from infinity enters the scene. As in pbrt, the disk has the radius of the
+// scene's bounding sphere, and touches it.
 FN vec3 distant_origin(vec3 to_light, vec2 u) {
     vec2 disk = sample_concentric_disk(u);
     Frame frame = frame_from_z(to_light);
@@ -53,7 +54,7 @@ FN bool emit_from_point(uint index, vec2 u_place, vec2 u_direction, INOUT(Emissi
         e.direction = to_world(frame_from_z(spot_axis(light)), sample_uniform_cone(u_direction, one_minus_cos));
         pdf = pdf_uniform_cone(one_minus_cos);
     } else if (HAS(EFFECT_PROJECTION_LIGHTS) && light.kind == LIGHT_PROJECTION) {
-        // Uniform over the picture at z = 1, which cos^3 turns into solid angle.
+        // Uniform over the image at z = 1, of which an area dA has the solid angle cos^3 dA.
         TransformRecord m = transforms[light.transform];
         vec4 window = projection_window(light);
         vec2 p = vec2(lerp_of(u_direction.x, window.x, window.z), lerp_of(u_direction.y, window.y, window.w));
@@ -71,8 +72,9 @@ FN bool emit_from_point(uint index, vec2 u_place, vec2 u_direction, INOUT(Emissi
     return true;
 }
 
-// The start of a photon, from six uniform numbers, those of choices as bits (random.h); false where the choice carries no
-// light. Power beyond the range of a float stays infinite: what gathers it is not finite either, and is counted (film_add).
+// Samples the start of a photon with six uniform random numbers (u_choice and u_direction as bits, random.h); false if
+// the sample has no power. Power beyond a float's range stays infinite: samples that gather it are not finite either,
+// and film_add counts them.
 FN bool emit_photon(uint u_choice, float u_side, vec2 u_place, uvec2 u_direction, OUT(Emission) e) {
     e.origin = vec3(0.0f);
     e.direction = vec3(0.0f, 0.0f, 1.0f);

@@ -1,14 +1,14 @@
-// Light from infinitely far away that arrives from all directions: constant, or an image.
+// Infinite lights, which illuminate from all directions: constant, or an image.
 //
-// Images are equal-area octahedral squares with the pole along +z of light space (pbrt, 4th edition, section 12.5.2), so a
-// density on the square is 4 pi times the density in solid angle. Texels are taken as they are (no interpolation), as in
-// pbrt, and the distribution that they are sampled from is constant on each: its density is exact.
+// Images are equal-area octahedral squares with the pole along +z of light space (pbrt, 4th edition, section 12.5.2),
+// so a density on the square is 4 pi times the density in solid angle. As in pbrt, texels are not interpolated. The
+// sampling density is constant within each texel, and therefore exact.
 #ifndef LAMPYRIS_KERNEL_ENVIRONMENT
 #define LAMPYRIS_KERNEL_ENVIRONMENT
 
 #include "core/kernel/distribution.h"
 
-// How much solid angle in light space a unit of solid angle about the world's direction d is.
+// Solid angle in light space per solid angle in world space, around the world's direction d.
 FN float solid_angle_stretch(IN(TransformRecord) m, vec3 d) {
     float l = length_of(transform_vector(m.from0, m.from1, m.from2, d));
     return abs(determinant_of(m.from0, m.from1, m.from2)) / (l * l * l);
@@ -18,7 +18,7 @@ FN vec2 environment_st(IN(TransformRecord) m, vec3 direction) {
     return square_from_direction(unit(transform_vector(m.from0, m.from1, m.from2, direction)));
 }
 
-// The texel that a direction falls into.
+// The texel that a direction maps to.
 FN uvec2 environment_texel(uint light, IN(TransformRecord) m, vec3 direction) {
     uint image = lights[light].image;
     uint width = images[image].width;
@@ -33,7 +33,7 @@ FN Spectrum infinite_image_radiance(uint light, uvec2 texel) {
     return lights[light].emission * spectrum_of_rgb(image_texel(image, int(texel.x), int(texel.y)));
 }
 
-// Without the probability of choosing the light.
+// Density (1/sr), without the probability of choosing the light.
 FN float infinite_image_pdf(uint light, IN(TransformRecord) m, vec3 direction, uvec2 texel) {
     uint image = lights[light].image;
     return pdf_image_texel(lights[light].distribution, images[image].width, images[image].height, texel.x, texel.y) *
@@ -55,7 +55,7 @@ FN Spectrum environment_radiance(vec3 direction) {
     return sum;
 }
 
-// Density (1/sr) with which light_sample finds the direction by choosing any infinite light.
+// Density (1/sr) with which light_sample samples the direction by choosing any infinite light.
 FN float environment_pdf(vec3 direction) {
     float sum = 0.0f;
     if (!HAS(EFFECT_ENVIRONMENT)) return sum;
@@ -70,8 +70,9 @@ FN float environment_pdf(vec3 direction) {
     return sum;
 }
 
-// Samples one infinite light. Where there are several, the result is what all of them send from that direction, with the
-// density of the mixture: that is also what a ray that finds the direction by chance sees and is weighted by.
+// Samples one infinite light. If there are several, the result is the radiance of all of them from that direction, with
+// the density of the mixture: a ray that the BSDF samples in that direction sees the same radiance, and is weighted
+// with the same density.
 FN bool environment_sample(uint light, uvec2 u, OUT(vec3) direction, OUT(Spectrum) radiance, OUT(float) pdf) {
     radiance = lights[light].emission;
     pdf = pdf_uniform_sphere() * lights[light].choice_probability;
@@ -81,7 +82,7 @@ FN bool environment_sample(uint light, uvec2 u, OUT(vec3) direction, OUT(Spectru
         TexelSample s =
             sample_image_distribution(lights[light].distribution, images[image].width, images[image].height, u);
         direction = unit(transform_vector(m.to0, m.to1, m.to2, direction_from_square(s.st)));
-        // Radiance and density are those of the texel that was chosen: the direction may round into the next one.
+        // Radiance and density are those of the chosen texel: rounding may move the direction into the next one.
         uvec2 texel = uvec2(s.x, s.y);
         radiance = infinite_image_radiance(light, texel);
         pdf = infinite_image_pdf(light, m, direction, texel) * lights[light].choice_probability;

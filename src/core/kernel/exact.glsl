@@ -1,11 +1,12 @@
-// Division and square root as IEEE 754 rounds them, for devices that do not: Vulkan lets them be off by 2.5 units in the last place, and
-// GPUs are. With `--set backend.exact=on` (docs/decisions/exact-arithmetic.md) backends/vulkan/exact_arithmetic.cpp has every quotient and
-// root of a shader computed here; the C++ build needs none of it. exact_arithmetic_test reads this file as C++ and tries the hardest cases.
+// Division and square root rounded as IEEE 754 requires, for devices that round otherwise: Vulkan allows errors of 2.5
+// units in the last place, and GPUs make them. With `--set backend.exact=on` (docs/decisions/exact-arithmetic.md),
+// backends/vulkan/exact_arithmetic.cpp replaces every quotient and square root of a shader by calls to these functions;
+// the C++ build does not need them. exact_arithmetic_test compiles this file as C++ and tests the hardest cases.
 //
-// What the device says is a guess, off by a few units. Significands are integers of 24 bits: the remainder of the guess is small, hence
-// exact in 32 bits whatever is lost above them, and says which integer is nearest. Neither a quotient nor a root lies halfway between
-// two. Denormals are zero, as on the CPU backend. No fused multiply-add is asked for: Vulkan does not say that fma is one (on lavapipe
-// it is two operations).
+// The device's result is a guess, off by a few units. Significands are integers of 24 bits. The remainder of the guess
+// is small, and therefore exact in 32 bits although higher bits are lost; it tells which integer is nearest. Neither a
+// quotient nor a root is halfway between two. Denormals are zero, as on the CPU backend. There is no fused
+// multiply-add, because Vulkan does not guarantee that fma is one operation (on lavapipe it is two).
 #ifndef EXACT_GUESS
 #define EXACT_GUESS(x) (x)
 #endif
@@ -15,7 +16,7 @@ float exact_quotient(const float a, const float b) {
     uint b_bits = floatBitsToUint(b);
     int a_exponent = int((a_bits >> 23u) & 255u);
     int b_exponent = int((b_bits >> 23u) & 255u);
-    // Of zeros, infinities and NaNs.
+    // Zeros, infinities and NaNs.
     if (a_exponent == 0 || a_exponent == 255 || b_exponent == 0 || b_exponent == 255)
         return uintBitsToFloat(a_exponent == 0 ? a_bits & 0x80000000u : a_bits) /
                uintBitsToFloat(b_exponent == 0 ? b_bits & 0x80000000u : b_bits);
@@ -38,13 +39,13 @@ float exact_root(const float x) {
     uint exponent = (bits >> 23u) & 255u;
     if (exponent == 0u) return uintBitsToFloat(bits & 0x80000000u);
     if (bits >= 0x7f800000u) return bits == 0x7f800000u ? x : uintBitsToFloat(0x7fc00000u);
-    uint odd = ~exponent & 1u;  // of the power of two: the bias is odd
+    uint odd = ~exponent & 1u;  // 1 if the power of two is odd (the exponent's bias is odd, too)
     uint n = (bits & 0x7fffffu) | 0x800000u;
     float significand = float(n << odd);
     float inverse = EXACT_GUESS(inversesqrt(significand));
     n <<= 23u + odd;
-    uint q = uint(significand * inverse * 2896.309375740099f);  // the root of 2^23
-    q += uint(int(floor(float(int(n - q * q)) * inverse * 0.000172633491498701f + 0.5f)));  // half of the inverse of that root
+    uint q = uint(significand * inverse * 2896.309375740099f);  // sqrt(2^23)
+    q += uint(int(floor(float(int(n - q * q)) * inverse * 0.000172633491498701f + 0.5f)));  // 1 / (2 sqrt(2^23))
     int rest = int(n - q * q);
     q += uint(rest > int(q)) - uint(rest <= -int(q));
     return uintBitsToFloat((q & 0x7fffffu) | (((exponent - odd + 127u) >> 1u) << 23u));

@@ -1,9 +1,9 @@
-// What a rendering kernel adds up for each pixel, and which pixel an index means.
+// Accumulation of samples in a pixel, and the mapping from invocation indices to pixels.
 #ifndef LAMPYRIS_KERNEL_FILM
 #define LAMPYRIS_KERNEL_FILM
 
-// Consecutive indices lie close to each other: strips of eight rows, walked column by column, so that rays of one block of
-// work (CPU) or of one subgroup (GPU) take similar ways.
+// Consecutive indices are nearby pixels: strips of eight rows, traversed column by column, so that the rays of a block
+// of work (CPU) or of a subgroup (GPU) are coherent.
 FN uvec2 film_pixel_of(uint index, IN(FilmWindow) window) {
     uint strip = index / (8u * window.width);
     uint rest = index - strip * 8u * window.width;
@@ -21,12 +21,13 @@ FN float compensated_add(float sum, float value, INOUT(float) low) {
     float next = sum + value;
     float of_value = next - sum;
     low += (sum - (next - of_value)) +
-           (value - of_value);  // exact, whichever is larger (Knuth, TAOCP 2, 4.2.2, theorem B)
+           (value - of_value);  // exact, whichever operand is larger (Knuth, TAOCP 2, 4.2.2, theorem B)
     return next;
 }
 
-// Adds one sample, in linear Rec. 709. Radiance that is not finite, or that the sums cannot hold with what they have, is counted and located, not
-// averaged in: then the result is false. Squares overflow sooner (above 1.8e19), and stay infinite: the variance is not known.
+// Adds one sample, in linear Rec. 709. A sample whose radiance is not finite, or would make the sums overflow, is not
+// added but counted, with the pass of the first one; then the result is false. Squares overflow sooner (above 1.8e19)
+// and stay infinite: the variance is then unknown.
 FN bool film_add(INOUT(FilmPixel) p, vec3 rgb, float weight, uint pass) {
     p.samples += 1u;
     vec3 value = rgb * weight;
@@ -45,19 +46,20 @@ FN bool film_add(INOUT(FilmPixel) p, vec3 rgb, float weight, uint pass) {
     return true;
 }
 
-// Adds the estimate of its own bias of a sample that was added; not finite, it leaves the bias unknown.
+// Adds a sample's estimate of its own bias, for a sample that was added. If it is not finite, the pixel's bias is
+// unknown.
 FN void film_add_bias(INOUT(FilmBias) p, vec3 bias, float weight) {
     vec3 value = bias * weight;
     p.sum += vec4(value.x, value.y, value.z, 0.0f);
     p.squares += vec4(value.x * value.x, value.y * value.y, value.z * value.z, 0.0f);
 }
 
-// What the first surface that a camera ray meets is like: channels of the image, for denoisers.
+// Features of the first surface that a camera ray hits: image channels for denoisers.
 struct FirstHit {
     vec3 albedo;
     vec3 normal;     // shading normal
-    float distance;  // from where the ray starts, in scene units
-    float met;       // 1, or 0 where the ray meets nothing
+    float distance;  // from the ray's origin, in scene units
+    float met;       // 1, or 0 if the ray hits nothing
 };
 
 FN FirstHit no_first_hit() {
@@ -85,7 +87,8 @@ FN void film_add_first_hit(INOUT(FilmPixel) p, IN(FirstHit) f) {
     p.depth += f.distance;
 }
 
-// What the film makes of radiance before it is added: the sensor's imaging ratio and the clamp of `maxcomponentvalue`.
+// Converts radiance to the value that the film adds: applies the sensor's imaging ratio and the clamp
+// `maxcomponentvalue`.
 FN vec3 film_sensor(Spectrum radiance) {
     vec3 value = rgb_of(radiance) * scene[0].camera.imaging_ratio;
     float largest = max_component(value);
@@ -93,7 +96,7 @@ FN vec3 film_sensor(Spectrum radiance) {
     return limit > 0.0f && largest > limit ? value * (limit / largest) : value;
 }
 
-// One sample of a pixel: the camera's ray, the weight of the pixel filter, and the numbers from the first free dimension on.
+// One sample of a pixel: the camera ray, the pixel filter's weight, and a sampler at the first unused dimension.
 struct CameraSample {
     Ray ray;
     float weight;
@@ -101,7 +104,8 @@ struct CameraSample {
     Sampler numbers;
 };
 
-// The i-th sample of the window's range, at a pixel of the window. The filter and the lens take CAMERA_DIMENSIONS.
+// The i-th sample of the window's range, at a pixel of the window. The filter and the lens use CAMERA_DIMENSIONS random
+// numbers.
 CONST uint CAMERA_DIMENSIONS = 4u;
 FN CameraSample camera_sample(IN(FilmWindow) w, uvec2 pixel, uint i) {
     CameraSample s;

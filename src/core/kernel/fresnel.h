@@ -1,42 +1,43 @@
-// Fresnel's equations, and refraction, for unpolarised light.
+// Fresnel's equations and refraction, for unpolarised light.
 //
-// `eta` is the index below the surface over the index on the incident side; `cos_i` the cosine of incidence, in [0, 1].
+// `eta` is the refractive index below the surface over that on the incident side; `cos_i` the cosine of incidence, in
+// [0, 1].
 #ifndef LAMPYRIS_KERNEL_FRESNEL
 #define LAMPYRIS_KERNEL_FRESNEL
 
-// Squared cosine of the refracted direction; not positive at total internal reflection. Written so that no digits cancel
-// for eta near 1 or at grazing incidence: eta^2 cos_t^2 = (eta^2 - 1) + cos_i^2.
+// Squared cosine of the refracted direction; not positive for total internal reflection. Written so that nothing
+// cancels for eta near 1 or at grazing incidence: eta^2 cos_t^2 = (eta^2 - 1) + cos_i^2.
 FN float refracted_cosine_squared(float cos_i, float eta) {
     return ((eta - 1.0f) * (eta + 1.0f) + cos_i * cos_i) / (eta * eta);
 }
 
-// Reflected share of the power at a dielectric, from the cosines on both sides, which are not both 0 (pbrt, 4th edition,
-// equation 9.6).
+// Fraction of the power that a dielectric reflects, from the cosines on both sides, which must not both be 0 (pbrt, 4th
+// edition, equation 9.6).
 FN float fresnel_of_cosines(float cos_i, float cos_t, float eta) {
     float parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
     float perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
     return 0.5f * (parallel * parallel + perpendicular * perpendicular);
 }
 
-// The same from the cosine of incidence; 1 at total internal reflection.
+// The same from the cosine of incidence; 1 for total internal reflection.
 FN float fresnel_dielectric(float cos_i, float eta) {
     float c = clamp(cos_i, 0.0f, 1.0f);
     float cos2_t = refracted_cosine_squared(c, eta);
     return cos2_t > 0.0f ? fresnel_of_cosines(c, sqrt(cos2_t), eta) : 1.0f;
 }
 
-// Reflected share of the power at a conductor of index n + ik, one channel (Born and Wolf, section 14.2, with the
-// effective index a + ib inside: a^2 - b^2 = n^2 - k^2 - sin^2, a b = n k).
+// Fraction of the power that a conductor of refractive index n + ik reflects, for one channel (Born and Wolf, section
+// 14.2, with the effective index a + ib inside: a^2 - b^2 = n^2 - k^2 - sin^2, a b = n k).
 FN float fresnel_conductor1(float cos_i, float n, float k) {
     float c = clamp(cos_i, 0.0f, 1.0f);
     float cos2 = c * c;
     float sin2 = (1.0f - c) * (1.0f + c);
     float k2 = k * k;
-    float difference = (n - 1.0f) * (n + 1.0f) + cos2 - k2;  // where digits of n^2 - sin^2 would cancel
+    float difference = (n - 1.0f) * (n + 1.0f) + cos2 - k2;  // n^2 - k^2 - sin^2 without cancellation
 
     float product = 2.0f * n * k;
     float sum = sqrt(difference * difference + product * product);  // a^2 + b^2
-    // (sum + difference) / 2, or the same over its conjugate where the two cancel.
+    // (sum + difference) / 2, expanded by its conjugate if the two would cancel.
     float a2 = difference >= 0.0f ? 0.5f * (sum + difference) : 0.5f * product * product / (sum - difference);
     float a = sqrt(a2);
     float t1 = sum + cos2;
@@ -56,7 +57,7 @@ FN Spectrum fresnel_conductor(float cos_i, Spectrum n, Spectrum k) {
 }
 
 // Direction of w (pointing away from the surface, dot(w, n) = cos_i > 0) after refraction through the surface with
-// normal n; false at total internal reflection.
+// normal n; false for total internal reflection.
 FN bool refract_direction(vec3 w, vec3 n, float cos_i, float eta, OUT(vec3) refracted) {
     refracted = vec3(0.0f, 0.0f, -1.0f);
     float cos2_t = refracted_cosine_squared(cos_i, eta);
@@ -65,7 +66,7 @@ FN bool refract_direction(vec3 w, vec3 n, float cos_i, float eta, OUT(vec3) refr
     return true;
 }
 
-// A pane's reflected share, all internal reflections included, from that of one interface: R' = R + T^2 R / (1 - R^2)
+// Reflectance of a pane, including all internal reflections, from that of one interface: R' = R + T^2 R / (1 - R^2)
 // (pbrt, 4th edition, section 9.5.1).
 FN float pane_reflectance(float r) { return r < 1.0f ? 2.0f * r / (1.0f + r) : 1.0f; }
 

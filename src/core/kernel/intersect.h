@@ -1,12 +1,13 @@
-// From a ray to a point on a surface: trace, then recompute distance and position from the primitive in shared code, so
-// that what follows does not depend on which tracer answered.
+// Intersection of rays with surfaces: traces the ray, then recomputes distance and position from the primitive in
+// shared code, so that results do not depend on the tracer.
 #ifndef LAMPYRIS_KERNEL_INTERSECT
 #define LAMPYRIS_KERNEL_INTERSECT
 
-// How many masked or invisible surfaces a ray may pass before it is an error.
+// Maximum number of masked or invisible surfaces that a ray may pass; more is an error.
 CONST uint MAX_PASSED_SURFACES = 100000u;
 
-// The triangle's point that the ray meets (Möller and Trumbore 1997 for the barycentrics), in the geometry set's space.
+// The point at which the ray hits the triangle (barycentrics as in Möller and Trumbore 1997), in the space of the
+// geometry's set.
 FN void triangle_surface(uint geometry, uint primitive, vec3 o, vec3 d, INOUT(Surface) s) {
     GeometryRecord g = geometries[geometry];
     uint base = g.first_index + 3u * primitive;
@@ -26,7 +27,7 @@ FN void triangle_surface(uint geometry, uint primitive, vec3 o, vec3 d, INOUT(Su
     vec3 side2 = e2;
     float unscale = 1.0f;
     if (RARELY(!square_fits(n2))) {
-        // Products of up to four lengths follow: the longer edge becomes the unit.
+        // Products of up to four lengths follow, so scale the longer edge to a length of about 1.
         float scale = scale_to_one(max(max_component(abs(e1)), max_component(abs(e2))));
         unscale = 1.0f / scale;
         side1 = scale * e1;
@@ -39,7 +40,7 @@ FN void triangle_surface(uint geometry, uint primitive, vec3 o, vec3 d, INOUT(Su
     float det = -dot3(d, n);  // e1 . (d x e2)
     vec3 r = cross3(from, side1);
     float inverse = det != 0.0f ? 1.0f / det : 0.0f;
-    // Rounding may put the point just outside: back onto the triangle.
+    // Clamped, because rounding may put the point just outside of the triangle.
     float b1 = clamp(dot3(from, q) * inverse, 0.0f, 1.0f);
     float b2 = clamp(dot3(d, r) * inverse, 0.0f, 1.0f - b1);
     float b0 = 1.0f - b1 - b2;
@@ -111,7 +112,7 @@ FN void triangle_surface(uint geometry, uint primitive, vec3 o, vec3 d, INOUT(Su
     }
 }
 
-// Moves a surface point from an instance's space to the world.
+// Transforms a surface point from an instance's space to world space.
 FN void surface_to_world(uint instance, INOUT(Surface) s) {
     TransformRecord m = instances[instance].transform;
     s.error = transform_error(m.to0, m.to1, m.to2, s.position, s.error);
@@ -128,8 +129,8 @@ FN void surface_to_world(uint instance, INOUT(Surface) s) {
     }
 }
 
-// The surface point of a hit; the ray is the one that was traced. False where the shared code finds no point (a tracer that
-// transforms rays itself may see the rim of an instanced quadric one rounding error farther out).
+// The surface point of a hit of the traced ray. False if the shared code finds no hit: a tracer that transforms rays
+// itself may see the rim of an instanced quadric one rounding error farther out.
 FN bool surface_at(IN(Hit) hit, vec3 o, vec3 d, INOUT(Surface) s) {
     vec3 set_o = o;
     vec3 set_d = d;
@@ -157,19 +158,19 @@ FN bool surface_at(IN(Hit) hit, vec3 o, vec3 d, INOUT(Surface) s) {
     return true;
 }
 
-// Rays that this invocation has traced.
+// Number of rays that this invocation has traced.
 PRIVATE(uint, traced_rays, 1)
 
-// What a surface is to a ray.
+// What happens to a ray at a surface.
 CONST uint SURFACE_STOPS = 0u;   // the ray ends here
-CONST uint SURFACE_PASSES = 1u;  // it is masked and lets this ray pass, by chance: another one might end here
-CONST uint SURFACE_ABSENT = 2u;  // it is masked, and nothing is there (alpha 0)
+CONST uint SURFACE_PASSES = 1u;  // masked, and this ray passes by random choice: another one might end here
+CONST uint SURFACE_ABSENT = 2u;  // masked, and there is no surface at this point (alpha 0)
 
 RARE_FN float masked_opacity(IN(Surface) s) {
     return clamp(surface_alpha(s.geometry, surface_texture_context(s)), 0.0f, 1.0f);
 }
 
-// The share of a surface that is there: its alpha.
+// The surface's opacity at the point: its alpha.
 FN float surface_opacity(IN(Surface) s) {
     if (!HAS(EFFECT_ALPHA)) return 1.0f;
     if (geometries[s.geometry].alpha_texture == NONE && geometries[s.geometry].alpha >= 1.0f) return 1.0f;
@@ -177,7 +178,7 @@ FN float surface_opacity(IN(Surface) s) {
     return masked_opacity(masked);
 }
 
-// By chance, with a number that belongs to the ray (as pbrt does).
+// A random choice, with a hash of the ray as the random number (as in pbrt).
 RARE_FN uint masked_fate(float opacity, vec3 o, vec3 d) {
     if (opacity <= 0.0f) return SURFACE_ABSENT;
     uint h = hash_combine(hash_combine(floatBitsToUint(o.x), floatBitsToUint(o.y)), floatBitsToUint(o.z));
@@ -192,7 +193,7 @@ FN uint surface_fate(float opacity, vec3 o, vec3 d) {
 
 FN bool is_interface(IN(Surface) s) { return materials[s.material].kind == MATERIAL_INTERFACE; }
 
-// The next surface point that the ray meets, masked ones too, which may let it pass: `fate` is one of SURFACE_*.
+// The next surface point that the ray hits, even if it is masked and lets the ray pass; `fate` is one of SURFACE_*.
 FN bool intersect_next(vec3 origin, vec3 direction, OUT(Surface) s, OUT(uint) fate) {
     Hit hit;
     traced_rays[0] += 1u;
@@ -203,8 +204,9 @@ FN bool intersect_next(vec3 origin, vec3 direction, OUT(Surface) s, OUT(uint) fa
     return true;
 }
 
-// The first surface point that the ray meets; masked surfaces are passed, interfaces are not. Directions are unit length.
-// `origin` becomes where the last ray started: surface_at, with it and the primitive in s, finds the point again.
+// The first surface point that stops the ray: masked surfaces may let it pass, interfaces stop it. Directions are unit
+// length. `origin` becomes the origin of the last ray: with it and the primitive in s, surface_at computes the same
+// point again.
 FN bool intersect_scene_from(INOUT(vec3) origin, vec3 direction, OUT(Surface) s) {
     float passed = 0.0f;
     Hit hit;
@@ -226,11 +228,11 @@ FN bool intersect_scene(IN(Ray) ray, OUT(Surface) s) {
     return intersect_scene_from(o, ray.direction, s);
 }
 
-// In place of the medium in which a shadow ray starts: media on the way do not count.
+// Passed instead of a shadow ray's first medium to ignore media.
 CONST uint MEDIA_IGNORED = 0xffffffffu;
 
-// Turns the unit direction towards `end`, and returns how far away that is: 0 where it does not lie ahead any more, because
-// nothing but rounding errors was on the way.
+// Points the unit direction at `end`, and returns the distance to it. Returns 0 if `end` is no longer ahead, because
+// only rounding errors were left of the distance.
 FN float aim_at(vec3 o, vec3 end, INOUT(vec3) direction) {
     vec3 way = end - o;
     if (!(dot3(way, direction) > 0.0f)) return 0.0f;
@@ -239,7 +241,7 @@ FN float aim_at(vec3 o, vec3 end, INOUT(vec3) direction) {
     return distance;
 }
 
-// shadow_ray where surfaces may let the ray pass.
+// shadow_ray for scenes in which surfaces may let the ray pass.
 RARE_FN bool shadow_ray_through(vec3 start_o, vec3 start_direction, float distance, vec3 end, uint start,
                                 OUT(Spectrum) transmittance) {
     transmittance = Spectrum(1.0f);
@@ -252,7 +254,7 @@ RARE_FN bool shadow_ray_through(vec3 start_o, vec3 start_direction, float distan
         Hit hit;
         Surface s;
         traced_rays[0] += 1u;
-        // Beyond each surface the ray starts a little aside of its line, and takes aim again.
+        // Behind each surface, the offset origin is a little off the line, so the ray is aimed again.
         float t_max = distance < INFINITE_DISTANCE ? aim_at(o, end, direction) : INFINITE_DISTANCE;
         bool found = t_max > 0.0f && trace_closest(o, direction, t_max, hit) && surface_at(hit, o, direction, s);
         if (!found) {
@@ -265,7 +267,7 @@ RARE_FN bool shadow_ray_through(vec3 start_o, vec3 start_direction, float distan
             crosses = surface_fate(opacity, o, direction) == SURFACE_STOPS;
         } else {
             if (opacity >= 1.0f) return true;
-            // No choice by chance: it would be the same one whenever the same ray is asked about.
+            // No random choice: it would be the same whenever the same ray is traced again.
             transmittance *= 1.0f - opacity;
         }
         if (absorbs) {
@@ -279,9 +281,10 @@ RARE_FN bool shadow_ray_through(vec3 start_o, vec3 start_direction, float distan
     return true;
 }
 
-// Whether anything opaque lies between o, outside of a surface, and `end`, `distance` away along the unit direction and outside of
-// a surface, too, if there is one (shadow_end); INFINITE_DISTANCE has no end. If not, `transmittance` is what masked surfaces and
-// media on the way leave, `start` being the medium in which the ray starts.
+// Whether anything opaque is between o and `end`, which is `distance` away along the unit direction. Both must be
+// outside of the surfaces that they belong to, if any (shadow_end); with INFINITE_DISTANCE there is no end. If nothing
+// opaque is between them, `transmittance` is what masked surfaces and media let through. `start` is the medium in which
+// the ray starts.
 FN bool shadow_ray(vec3 o, vec3 direction, float distance, vec3 end, uint start, OUT(Spectrum) transmittance) {
     if (HAS(EFFECT_ALPHA | EFFECT_INTERFACE) && RARELY(CALLED_FOR(EFFECT_ALPHA | EFFECT_INTERFACE))) {
         Spectrum through;
@@ -297,19 +300,19 @@ FN bool shadow_ray(vec3 o, vec3 direction, float distance, vec3 end, uint start,
     return t_max > 0.0f && trace_occluded(o, aimed, t_max);
 }
 
-// How much a surface point sees of what lies `distance` away along the unit direction, whatever media lie between; the distance counts
-// from the point's rounding error on.
+// The visibility, from 0 to 1, of a point `distance` away from s along the unit direction, ignoring media. The distance
+// counts from the ray's offset origin.
 FN float scene_openness(IN(Surface) s, vec3 direction, float distance) {
     Spectrum transmittance;
     vec3 o = origin_beyond(s.position, s.way, direction);
-    bool limited = distance < 1e18f;  // no two points of a scene are so far apart, and the square is a float
+    bool limited = distance < 1e18f;  // larger than any scene, and its square does not overflow
     vec3 end = limited ? o + distance * direction : vec3(0.0f);
     float reach = limited ? distance : INFINITE_DISTANCE;
     return shadow_ray(o, direction, reach, end, MEDIA_IGNORED, transmittance) ? 0.0f : transmittance[0];
 }
 
-// The share of light that comes to s from `end` (shadow_end), `distance` away along the unit direction. s was reached through
-// `medium`.
+// The fraction of light that reaches s from `end` (shadow_end), `distance` away along the unit direction. s was reached
+// through `medium`.
 FN Spectrum scene_transmittance(IN(Surface) s, vec3 direction, float distance, vec3 end, uint medium) {
     Spectrum transmittance;
     uint start = medium_behind(s, direction, medium);

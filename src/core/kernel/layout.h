@@ -1,8 +1,9 @@
-// The scene's records as kernels read them: shared by the host, the C++ kernels and GLSL.
+// The scene's records, shared by the host, the C++ kernels and GLSL.
 //
-// Members come in fours: vec4, uvec4, four scalars, or a vec3 or Spectrum and a scalar. Whatever pads does so differently in GLSL and C++, and a
-// shifted read gives NaN.
-// Indices that may be absent hold NONE. Directions and positions are world space unless said; colours are linear Rec.709.
+// Members come in fours: vec4, uvec4, four scalars, or a Spectrum and a scalar. GLSL and C++ pad everything else
+// differently, and shifted reads give NaN.
+// Optional indices are NONE if they are absent. Directions and positions are in world space unless stated otherwise;
+// colours are linear Rec. 709.
 #ifndef LAMPYRIS_KERNEL_LAYOUT
 #define LAMPYRIS_KERNEL_LAYOUT
 
@@ -20,10 +21,10 @@ CONST uint GEOMETRY_CYLINDER = 4u;
 
 CONST uint GEOMETRY_HAS_NORMALS = 1u;
 CONST uint GEOMETRY_HAS_UVS = 2u;
-CONST uint GEOMETRY_FLIP =
-    4u;  // ReverseOrientation xor a handedness-swapping transform: the geometric normal turns round
-CONST uint GEOMETRY_REVERSED =
-    8u;  // ReverseOrientation alone: vertex normals are negated on loading, this tells quadrics
+// ReverseOrientation xor a transform that swaps handedness: the geometric normal is negated.
+CONST uint GEOMETRY_FLIP = 4u;
+// ReverseOrientation alone, for quadrics: vertex normals are negated on loading.
+CONST uint GEOMETRY_REVERSED = 8u;
 
 // A quadric in its own space, about the z axis.
 struct Quadric {
@@ -40,14 +41,14 @@ struct Quadric {
 struct GeometryRecord {
     uint kind;
     uint flags;
-    uint first_index;   // of `indices`, 3 a triangle, 4 a patch; indices are relative to first_vertex
-    uint first_vertex;  // of `positions`, in vertices
+    uint first_index;   // in `indices`, 3 per triangle, 4 per patch; indices are relative to first_vertex
+    uint first_vertex;  // in `positions`, counted in vertices
     uint material;
     uint first_light;    // light of primitive i is first_light + i; or NONE
-    uint alpha_texture;  // or NONE: `alpha` then
+    uint alpha_texture;  // or NONE: then `alpha`
     uint transform;      // quadrics
-    uint first_normal;   // of `normals` and `uvs`, in vertices
-    uint first_uv;
+    uint first_normal;   // in `normals`, counted in vertices
+    uint first_uv;       // in `uvs`, counted in vertices
     uint primitive_count;
     uint media;  // interior << 16 | exterior: a transition between media where they differ
     Quadric quadric;
@@ -65,7 +66,7 @@ struct TransformRecord {
     vec4 from2;
 };
 
-// Instance 0 is the world itself, with the identity.
+// Instance 0 is the world itself, with the identity transform.
 struct InstanceRecord {
     TransformRecord transform;
     uint first_geometry;
@@ -74,12 +75,13 @@ struct InstanceRecord {
     uint swaps_handedness;  // 1 if the transform does
 };
 
-// Binary BVH node that holds both children's boxes (64 bytes; kernels read it as two pairs). A child is an inner node (its index), or has the sign bit: a
-// leaf, count << 24 | first primitive, or with a count of 0 an instance (its index).
+// BVH2 node with the boxes of both children (64 bytes, which kernels read as two pairs). A child is the index of an
+// inner node, or has the sign bit set: a leaf, count << 24 | first primitive, or, if the count is 0, the index of an
+// instance.
 CONST uint BVH_LEAF = 0x80000000u;
-CONST uint BVH_DEPTH = 40u;  // of a tree, at most, in a scene without instances; and what the stack must hold
-CONST uint BVH_DEPTH_INSTANCES =
-    31u;  // of each tree in a scene with instances (a mixed leaf adds up to 3 to the world's)
+CONST uint BVH_DEPTH = 40u;  // maximum depth of the tree of a scene without instances, and the size of its stack
+// Maximum depth of each tree of a scene with instances (a mixed leaf adds up to 3 to the world's).
+CONST uint BVH_DEPTH_INSTANCES = 31u;
 // A primitive is three vec4: v0 | geometry, v1 | primitive, v2 | one of these kinds.
 CONST uint BVH_TRIANGLE = 0u;
 CONST uint BVH_QUADRIC = 1u;
@@ -98,15 +100,15 @@ CONST uint MATERIAL_REMAP = 1u;  // roughness is remapped (alpha = sqrt(roughnes
 CONST uint MATERIAL_USES_REFLECTANCE = 2u;  // conductor: color0 is `reflectance`, from which eta = 1 and k follow
 CONST uint MATERIAL_REMAP_COAT = 4u;        // as MATERIAL_REMAP, for the interface's roughness
 CONST uint MATERIAL_ENERGY_COMPENSATION = 8u;
-CONST uint MATERIAL_EXACT_COAT = 16u;  // coats: unbiased weights where pbrt's are not (layered.h)
+CONST uint MATERIAL_EXACT_COAT = 16u;  // coats: unbiased weights where pbrt's are biased (layered.h)
 
-// A slot's value is its constant, or where its texture is not NONE, the texture.
+// A slot's value is its texture, or, if that is NONE, its constant.
 struct MaterialRecord {
     uint kind;  // MATERIAL_NAME
     uint flags;
     uint bump_texture;    // displacement, or NONE
     uint normal_map;      // image, or NONE
-    uint color0_texture;  // textures, or NONE, of the slots below
+    uint color0_texture;  // textures of the slots below, or NONE
     uint color1_texture;
     uint color2_texture;
     uint roughness_u_texture;
@@ -115,9 +117,9 @@ struct MaterialRecord {
     uint coat_roughness_u_texture;
     uint coat_roughness_v_texture;
     Spectrum color0;  // reflectance; conductor: eta or reflectance
-    float scale;      // diffusetransmission: of both
+    float scale;      // diffusetransmission: scales both colours
     Spectrum color1;  // conductor: k; diffusetransmission: transmittance
-    float amount;     // mix: of second_material
+    float amount;     // mix: weight of second_material
     Spectrum color2;  // coats: albedo of the medium between the layers
     uint amount_texture;
     float roughness_u;  // of the base for coatedconductor, of the coat for coateddiffuse
@@ -127,8 +129,8 @@ struct MaterialRecord {
     float thickness;         // coats
     float coat_roughness_u;  // coatedconductor
     float coat_roughness_v;
-    float roughest_alpha;  // GGX alpha of its roughest lobe anywhere (1e30: diffuse)
-    uint max_depth;        // coats: most events of a random walk
+    float roughest_alpha;  // largest GGX alpha of any lobe at any point (1e30: diffuse)
+    uint max_depth;        // coats: maximum number of events of a random walk
     uint samples;          // coats: random walks per evaluation
     uint first_material;   // mix
     uint second_material;
@@ -136,23 +138,23 @@ struct MaterialRecord {
 
 // ---- Media -----------------------------------------------------------------------------------------------------------
 
-// Entry of `media` that every scene may name and none needs: empty space. So 0 wherever a medium may stand is no medium.
+// Entry 0 of `media` is empty space. So 0 means no medium wherever a medium's index is stored.
 CONST uint MEDIUM_VACUUM = 0u;
-CONST uint MEDIUM_COUNT = 0x10000u;  // at most, this one included: two fit into an uint
+CONST uint MEDIUM_COUNT = 0x10000u;  // maximum, including vacuum: two indices fit into a uint
 
 struct MediumRecord {
-    Spectrum sigma_a;  // absorbed share per distance (1 / scene unit)
+    Spectrum sigma_a;  // absorption coefficient (1 / scene unit)
     float unused0;
 };
 
 // ---- Textures --------------------------------------------------------------------------------------------------------
 
-// A texture is a program in postfix order over a stack of colours (floats use all three channels alike, and read the first), so
-// that a texture of textures needs no recursion: the last operation of a program has flags & 1.
-// Operations below TEXTURE_CHECKERBOARD push a value, the others replace the values that they pop by one.
+// A texture is a program in postfix order over a stack of colours, so that nested textures need no recursion. (Floats
+// are colours with three equal channels, of which the first is read.) The last operation of a program has flags & 1.
+// Operations below TEXTURE_CHECKERBOARD push a value; the others pop their operands and push their result.
 CONST uint TEXTURE_CONSTANT = 0u;  // a
 CONST uint TEXTURE_IMAGE = 1u;     // image at the mapped uv; a: scale; option & 1: invert
-CONST uint TEXTURE_FBM = 2u;       // a.x: roughness; option: octaves; image: first of Perlin's permutation in `texels`
+CONST uint TEXTURE_FBM = 2u;       // a.x: roughness; option: octaves; image: offset of Perlin's permutation in `texels`
 CONST uint TEXTURE_WRINKLED = 3u;  // the same
 CONST uint TEXTURE_WINDY = 4u;     // the same, without a roughness
 CONST uint TEXTURE_MARBLE = 5u;    // the same, with a: roughness, scale, variation
@@ -162,20 +164,20 @@ CONST uint TEXTURE_MIX = 10u;            // of tex1, tex2, amount
 CONST uint TEXTURE_DIRECTION_MIX = 11u;  // of tex1, tex2; a: unit direction in world space
 CONST uint TEXTURE_DOTS = 12u;           // of inside, outside; image: the permutation
 CONST uint TEXTURE_BILERP = 13u;         // of v00, v01, v10, v11
-CONST uint TEXTURE_STACK = 16u;          // the depth and
-CONST uint TEXTURE_LENGTH = 1024u;       // the number of operations that the host guarantees not to exceed
+CONST uint TEXTURE_STACK = 16u;          // maximum depth of the stack, and
+CONST uint TEXTURE_LENGTH = 1024u;       // maximum number of operations; the host checks both
 
-CONST uint MAPPING_NONE = 0u;         // of operations that are the same everywhere
+CONST uint MAPPING_NONE = 0u;         // operations that use no coordinates
 CONST uint MAPPING_UV = 1u;           // m0: su, sv, du, dv
 CONST uint MAPPING_SPHERICAL = 2u;    // m0..m2: rows of texture-from-world
 CONST uint MAPPING_CYLINDRICAL = 3u;  // rows
-CONST uint MAPPING_PLANAR = 4u;       // m0: vs, ds; m1: vt, dt, with the texture's transform in them
+CONST uint MAPPING_PLANAR = 4u;       // m0: vs, ds; m1: vt, dt; both include the texture's transform
 CONST uint MAPPING_SPACE = 5u;        // rows; not (s, t) but the point in the texture's space
 
 struct TextureOp {
     uint operation;
-    uint flags;  // 1: last | mapping << 8
-    uint image;  // or table
+    uint flags;  // 1 if last | mapping << 8
+    uint image;  // or the offset of a table
     uint option;
     vec4 a;
     vec4 m0;
@@ -189,19 +191,19 @@ CONST uint WRAP_CLAMP = 2u;
 CONST uint WRAP_OCTAHEDRAL = 3u;
 CONST uint FILTER_POINT = 0u;
 CONST uint FILTER_BILINEAR = 1u;
-CONST uint TEXEL_RGBA8 = 0u;    // one uint a texel, R lowest; decoded by a table
-CONST uint TEXEL_R8 = 1u;       // four texels a uint, lowest first; decoded by a table
-CONST uint TEXEL_RGBA16F = 2u;  // two uints
-CONST uint TEXEL_RGB32F = 3u;   // three uints
-CONST uint TEXEL_R32F = 4u;     // one uint
+CONST uint TEXEL_RGBA8 = 0u;    // one uint per texel, R in the lowest byte; decoded by a table
+CONST uint TEXEL_R8 = 1u;       // four texels per uint, lowest byte first; decoded by a table
+CONST uint TEXEL_RGBA16F = 2u;  // two uints per texel
+CONST uint TEXEL_RGB32F = 3u;   // three uints per texel
+CONST uint TEXEL_R32F = 4u;     // one uint per texel
 
-// Texels lie row by row from the top.
+// Texels are stored row by row, from the top.
 struct ImageRecord {
     uint first_texel;  // in `texels`
     uint width;
     uint height;
     uint format;    // texel format | wrap << 8 | filter << 16
-    uint decoding;  // first of 256 floats (as bits) in `texels`: what a byte of an 8-bit format means, in linear light
+    uint decoding;  // 8-bit formats: offset in `texels` of 256 floats (as bits), each byte's linear value
     uint unused0;
     uint unused1;
     uint unused2;
@@ -210,7 +212,7 @@ struct ImageRecord {
 // ---- Lights ----------------------------------------------------------------------------------------------------------
 
 CONST uint LIGHT_TRIANGLE = 0u;
-CONST uint LIGHT_GEOMETRY = 1u;  // a quadric or a bilinear patch: ids say which
+CONST uint LIGHT_GEOMETRY = 1u;  // the quadric or bilinear patch of `geometry` and `primitive`
 CONST uint LIGHT_POINT = 2u;
 CONST uint LIGHT_SPOT = 3u;
 CONST uint LIGHT_DISTANT = 4u;
@@ -222,26 +224,39 @@ CONST uint LIGHT_GONIOMETRIC = 8u;
 CONST uint LIGHT_TWO_SIDED = 1u;
 CONST uint LIGHT_PASSED = 2u;  // a light of constant alpha 0: it emits, and all rays pass it
 
-CONST uint CDF_TOTAL = 0x80000000u;  // where a CDF in `distributions` ends
+CONST uint CDF_TOTAL = 0x80000000u;  // the last value of every CDF in `distributions`
 
-// Lights are ordered: the infinite ones first (SceneRecord says how many), so that an escaping ray visits only those.
+// Infinite lights come first (SceneRecord has their number), so that an escaping ray visits only those.
 //
-// `distributions` holds, at offsets that records give: the CDF by which lights are chosen (number of lights + 1 integers, from 0
-// to CDF_TOTAL); for each infinite image of w x h texels a CDF of its rows (h + 1 integers), then for each row a CDF of its texels
-// (w + 1); and the tables of a smooth pixel filter (CameraRecord; floats' bits). The probability of an interval is the difference of
-// its two numbers over CDF_TOTAL, which is exact, and not 0 for any positive weight (distribution.h).
-// Images of light are looked up at points of the equal-area octahedral square (infinite, goniometric) or of the picture
-// (projection), (0, 0) being the upper left corner; they are FILTER_POINT, as pbrt's, and infinite ones WRAP_OCTAHEDRAL.
-// Transforms of lights are the directive's own: that a goniometric image's pole is the light's y axis, and that images have
-// their first row on top, is the kernels' business.
+// `distributions` contains, at offsets that are stored in records:
+// - the CDF for choosing a light (number of lights + 1 integers, from 0 to CDF_TOTAL);
+// - for each infinite image of w x h texels, a CDF of its rows (h + 1 integers), then a CDF of each row's texels (w + 1);
+// - the tables of a smooth pixel filter (CameraRecord; bits of floats).
+// The probability of an interval is the difference of its two numbers over CDF_TOTAL. It is exact, and positive for every
+// positive weight (distribution.h).
+//
+// Images of lights are looked up at points of the equal-area octahedral square (infinite, goniometric) or of the
+// projected picture (projection); (0, 0) is the upper left corner. As in pbrt, they are FILTER_POINT, and infinite ones
+// WRAP_OCTAHEDRAL. A light's transform is that of its directive. Kernels handle that a goniometric image's pole is the
+// light's y axis, and that an image's first row is its top.
+//
+// Contents of v0 to v2 and `normal`; the last number of each is w:
+// - triangle. v0: p0, area. v1: p1 (in the order of the indices), distance of the farthest corner from the centroid.
+//   v2: p2, 1 / area. normal: unit normal, negated if the geometry's flags say so; 1 if vertex normals determine its side
+//   at each point instead, else 0.
+// - point, goniometric. v0: position.
+// - spot. v0: position. v1: unit axis (away from the light), cosine at which the falloff begins. v2.w: cosine at which it
+//   ends.
+// - distant. v0: unit direction towards the light.
+// - projection. v0: position. v2: xmin, ymin, xmax, ymax of the picture at z = 1 in light space.
 struct LightRecord {
     uint kind;
     uint flags;         // | medium << 16
-    uint image;         // or emission texture, or NONE
-    uint transform;     // of light space, or NONE
+    uint image;         // or the texture of an area light's emission, or NONE
+    uint transform;     // light space to world, or NONE
     uint geometry;      // area lights
     uint primitive;     // area lights
-    float shadow_end;   // triangle: how far outside of it shadow rays end
+    float shadow_end;   // triangle: distance from it at which shadow rays end
     uint distribution;  // infinite images: offset in `distributions`
     Spectrum emission;  // radiance, intensity or irradiance, or the scale of the texture or image
     float choice_probability;
@@ -264,17 +279,18 @@ CONST uint CAMERA_PERSPECTIVE = 0u;
 CONST uint CAMERA_ORTHOGRAPHIC = 1u;
 CONST uint PIXEL_FILTER_BOX = 0u;
 CONST uint PIXEL_FILTER_TRIANGLE = 1u;
-CONST uint PIXEL_FILTER_GAUSSIAN = 2u;  // and the other smooth ones: sampled from a table in `distributions`
+CONST uint PIXEL_FILTER_GAUSSIAN = 2u;  // and the other smooth filters: sampled with tables in `distributions`
 
-// A smooth filter has one table of n intervals from the centre to the radius for x and then one for y: the filter's value at
-// the n + 1 nodes (no interval changes its sign), the n + 1 numbers of the CDF of its absolute value, linear between nodes,
-// the integral of the absolute value over the filter's, and a guide to the CDF (Chen and Asau 1974): entry i is an interval at
-// or just before the one that a number from i/n on falls into.
+// A smooth filter has two tables, for x and then for y, each of n intervals from the centre to the radius. A table has
+// the filter's values at the n + 1 nodes (no interval contains a change of sign), the n + 1 numbers of the CDF of the
+// absolute value (linear between nodes), the integral of the absolute value over that of the filter, and a guide to the
+// CDF (Chen and Asau 1974): entry i is the interval at which to start the search for numbers from i/n on, at or just
+// before the right one.
 struct CameraRecord {
     uint kind;
     uint filter_kind;
     uint filter_tables;     // offset in `distributions`
-    uint filter_intervals;  // of a table: n
+    uint filter_intervals;  // per table: n
     uint resolution_x;      // of the full film
     uint resolution_y;
     uint crop_x;  // origin of the crop window
@@ -285,7 +301,7 @@ struct CameraRecord {
     vec4 screen;  // raster to camera space at z = 1: x = screen.x + px * screen.z, y = screen.y + py * screen.w
     float lens_radius;
     float focal_distance;
-    float max_component;  // clamp of a sample's largest one; 0: none
+    float max_component;  // limit of a sample's largest component; 0: none
     float imaging_ratio;
     float filter_radius_x;
     float filter_radius_y;
@@ -296,14 +312,14 @@ struct CameraRecord {
 struct SceneRecord {
     CameraRecord camera;
     uint light_count;
-    uint infinite_lights;  // the first so many of the lights
-    uint light_cdf;        // offset of the CDF by which lights are chosen in `distributions` (light_count + 1 integers)
+    uint infinite_lights;  // number of infinite lights, which come first
+    uint light_cdf;        // offset in `distributions` of the CDF for choosing a light (light_count + 1 integers)
     float light_power;     // luminous power of all lights (W)
     uint geometry_count;
     uint instance_count;
     uint root_node;      // of the top-level BVH
-    uint effects_low;    // effects that the scene calls for: the lower 32 bits of the EffectSet
-    uint camera_medium;  // in which the camera is
+    uint effects_low;    // effects that the scene needs: the lower 32 bits of the EffectSet
+    uint camera_medium;  // medium in which the camera is
     uint effects_high;   // the upper 32 bits
     uint unused0;
     uint unused1;
@@ -312,8 +328,8 @@ struct SceneRecord {
 
 // ---- Film ------------------------------------------------------------------------------------------------------------
 
-// Sums are compensated (Neumaier 1974), sample by sample, so that they do not depend on how passes are cut into dispatches,
-// and a million samples lose nothing.
+// Sums of radiance are compensated (Neumaier 1974), sample by sample, so that they do not depend on how passes are
+// split into dispatches, and lose nothing over a million samples.
 struct FilmPixel {
     vec3 sum;  // filter-weighted radiance
     float weight;
@@ -331,13 +347,13 @@ struct FilmPixel {
     uint first_left_out;  // pass of the first of those
 };
 
-// What an integrator knows of its bias: sums over samples, as FilmPixel's.
+// An integrator's estimate of its bias: sums over samples, as in FilmPixel.
 struct FilmBias {
     vec4 sum;
     vec4 squares;
 };
 
-// The part of the image that is rendered, in pixels of the full film, and which samples.
+// The part of the image to be rendered, in pixels of the full film, and the range of samples.
 struct FilmWindow {
     uint x;  // of its upper left pixel
     uint y;

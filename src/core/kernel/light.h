@@ -1,4 +1,5 @@
-// Lights: choosing one, sampling it from a reference point, and what a path that finds one by chance needs to know.
+// Lights: choosing one, sampling it from a reference point, and emission and density for paths that hit one by BSDF
+// sampling.
 //
 // Densities are per solid angle at the reference point (1/sr) and include the probability of choosing the light.
 #ifndef LAMPYRIS_KERNEL_LIGHT
@@ -10,18 +11,19 @@
 
 struct LightSample {
     vec3 wi;            // unit direction towards the light
-    Spectrum radiance;  // arriving from there, if nothing is in between; delta lights: radiance / pdf is what counts
-    float pdf;          // solid angle, times the probability of choosing the light; delta lights: the latter alone
+    Spectrum radiance;  // arriving from there if unoccluded; delta lights: only radiance / pdf is meaningful
+    float pdf;          // per solid angle, times the probability of choosing the light; delta lights: only the latter
     float distance;     // INFINITE_DISTANCE: the shadow ray leaves the scene
-    vec3 end;           // of the shadow ray, outside of the light's surface (shadow_end)
-    uint is_delta;      // 1: no ray finds this light by chance; pdf may be a density all the same (LIGHT_PASSED)
+    vec3 end;           // end of the shadow ray, outside of the light's surface (shadow_end)
+    uint is_delta;      // 1: rays cannot hit this light, although pdf may be a density (LIGHT_PASSED)
     uint light;
 };
 
 // ---- Area lights -----------------------------------------------------------------------------------------------------
 
-// The side of a one-sided light that emits. pbrt-v4's quadrics turn inside out under a mirroring transform where rays meet them, and
-// do not where they are sampled as lights. What scatters is as pbrt's rays see it; what emits is on the side that pbrt's lamps shine.
+// The normal on the side where a one-sided light emits. In pbrt-v4, a mirroring transform turns quadrics inside out for
+// ray intersections, but not for light sampling. Here, scattering follows pbrt's intersections, and emission pbrt's
+// light sampling.
 FN vec3 area_emission_side(uint light, vec3 ng) {
     if (!HAS(EFFECT_QUADRIC_LIGHTS) || lights[light].kind == LIGHT_TRIANGLE) return ng;
     uint geometry = lights[light].geometry;
@@ -30,7 +32,7 @@ FN vec3 area_emission_side(uint light, vec3 ng) {
     return geometries[geometry].kind >= GEOMETRY_SPHERE && mirrored ? -ng : ng;
 }
 
-// Radiance that leaves an area light at a point towards w.
+// Radiance that leaves a point of an area light towards w.
 FN Spectrum area_emission(uint light, vec3 position, vec3 ng, vec2 uv, vec3 w) {
     if ((lights[light].flags & LIGHT_TWO_SIDED) == 0u && !(dot3(area_emission_side(light, ng), w) > 0.0f))
         return Spectrum(0.0f);
@@ -45,13 +47,14 @@ FN Spectrum area_emission(uint light, vec3 position, vec3 ng, vec2 uv, vec3 w) {
     return radiance;
 }
 
-// The area light at s as seen from direction w (from s to the viewer, unit length); black where there is none.
+// Radiance of the area light at s in direction w (from s to the viewer, unit length); black if s is not on a light.
 FN Spectrum light_emission(IN(Surface) s, vec3 w) {
     if (!HAS(EFFECT_AREA_LIGHTS) || s.light == NONE) return Spectrum(0.0f);
     return area_emission(s.light, s.position, s.ng, s.uv, w);
 }
 
-// The density with which light_sample(ref_p, ...) would have found s, which a ray from ref_p in direction wi met.
+// The density with which light_sample(ref_p, ...) would have sampled s, where a ray from ref_p in direction wi hit the
+// light.
 FN float light_pdf(IN(Surface) s, vec3 ref_p, vec3 wi) {
     if (!HAS(EFFECT_AREA_LIGHTS) || s.light == NONE) return 0.0f;
     LightRecord light = lights[s.light];
@@ -66,8 +69,8 @@ FN float light_pdf(IN(Surface) s, vec3 ref_p, vec3 wi) {
     return pdf * light.choice_probability;
 }
 
-// The share of a masked light that is there: rays find it with this probability. A light that all rays pass sends all of its
-// light, as pbrt's.
+// A masked light's opacity: the probability that a ray hits it there. A light that all rays pass emits all of its
+// light, as in pbrt.
 FN float light_alpha(IN(LightRecord) light, vec3 position, vec3 ng, vec2 uv) {
     if ((light.flags & LIGHT_PASSED) != 0u) return 1.0f;
     TextureContext context;
@@ -77,7 +80,7 @@ FN float light_alpha(IN(LightRecord) light, vec3 position, vec3 ng, vec2 uv) {
     return clamp(surface_alpha(light.geometry, context), 0.0f, 1.0f);
 }
 
-// A point on an area light, uniform in its area (of patches that are plane); false where it has none.
+// Samples a point on an area light, uniformly by area (patches: only if they are plane); false if the area is zero.
 FN bool sample_light_area(IN(LightRecord) light, vec2 u, OUT(AreaSample) s) {
     if (!HAS(EFFECT_QUADRIC_LIGHTS) || light.kind == LIGHT_TRIANGLE) {
         s = sample_triangle_area(light, u);
@@ -124,8 +127,8 @@ FN float smooth_step_of(float x, float low, float high) {
     return t * t * (3.0f - 2.0f * t);
 }
 
-// Intensity (W/sr per channel) that the light at a point sends in direction w (world, unit length), as pbrt's lights of the
-// same names do (4th edition, sections 12.2.1 and 12.2.3).
+// Intensity (W/sr per channel) of a light at a point in direction w (world, unit length), as that of pbrt's lights of
+// the same names (4th edition, sections 12.2.1 and 12.2.3).
 FN Spectrum point_light_intensity(IN(LightRecord) light, vec3 w) {
     Spectrum intensity = light.emission;
     if (light.kind == LIGHT_SPOT)
@@ -164,13 +167,13 @@ FN bool sample_point_light(uint index, vec3 ref_p, INOUT(LightSample) s) {
 
 // ---- All lights ------------------------------------------------------------------------------------------------------
 
-// Up to this many lights, u.x picks the light and is rescaled to place the point on it: it keeps enough digits (the share of
-// samples that all lights have alike sees to that), needs no other number, and stratifies both together.
+// Up to this many lights, u.x picks the light and is rescaled to place the point on it. This needs no other number, and
+// stratifies both together. Enough digits are left, because a part of the samples is spread evenly over all lights.
 CONST uint LIGHTS_CHOSEN_BY_PLACE = 256u;
 FN bool light_choice_needs_number() { return scene[0].light_count > LIGHTS_CHOSEN_BY_PLACE; }
 
-// Chooses a light (in proportion to its power) and samples it from ref_p, by the bits of random numbers (random.h); false where
-// no light arrives.
+// Chooses a light in proportion to its power, and samples it from ref_p. u_choice and u_place are bits of random
+// numbers (random.h). False if no light arrives.
 FN bool light_sample(vec3 ref_p, uint u_choice, uvec2 u_place, OUT(LightSample) s) {
     s.wi = vec3(0.0f, 0.0f, 1.0f);
     s.radiance = Spectrum(0.0f);
@@ -190,7 +193,7 @@ FN bool light_sample(vec3 ref_p, uint u_choice, uvec2 u_place, OUT(LightSample) 
         uint number = cdf_number(u.x);
         s.light = find_interval(scene[0].light_cdf, count, number);
         float place = place_in_interval(scene[0].light_cdf + s.light, number, 0.5f);
-        // Bits again: those beyond a float's are made of the other number's.
+        // Back to bits: those below a float's precision are hashed from the other number.
         u.x = (uint(place * 16777216.0f) << 8u) | (hash32(u.y) >> 24u);
     }
     uint kind = lights[s.light].kind;

@@ -1,8 +1,8 @@
-// From a surface point to its Bsdf: which material of a mix, textures, bump or normal map, parameters as the models want them.
+// The Bsdf at a surface point: chooses the material of a mix, and evaluates textures, bump or normal map.
 #ifndef LAMPYRIS_KERNEL_MATERIAL
 #define LAMPYRIS_KERNEL_MATERIAL
 
-// Step of a bump map's finite differences, in units of u and v (pbrt's, where it knows no footprint).
+// Step of a bump map's finite differences, in units of u and v (that of pbrt if it has no footprint).
 CONST float BUMP_STEP = 5e-4f;
 
 FN TextureContext surface_texture_context(IN(Surface) s) {
@@ -13,17 +13,17 @@ FN TextureContext surface_texture_context(IN(Surface) s) {
     return c;
 }
 
-// Opacity of a geometry at a point: a hit counts with this probability.
+// Opacity of a geometry at a point: the probability that a hit counts.
 FN float surface_alpha(uint geometry, IN(TextureContext) c) {
     uint program = geometries[geometry].alpha_texture;
     if (program == NONE) return geometries[geometry].alpha;
     return texture_float(program, c);
 }
 
-// A mix is no scattering function, but stands for one of its materials: nothing is asked of it but which.
+// A mix does not scatter: it only chooses one of its materials.
 #include "materials/mix/mix_bsdf.h"
 
-// The texture of a slot, in the order of the record: color0..2, roughness u and v, thickness, the coat's roughness u and v.
+// The texture of a slot, in the record's order: color0..2, roughness u and v, thickness, the coat's roughness u and v.
 CONST uint MATERIAL_SLOTS = 8u;
 FN uint material_slot(IN(MaterialRecord) m, uint slot) {
     if (slot == 0u) return m.color0_texture;
@@ -36,10 +36,12 @@ FN uint material_slot(IN(MaterialRecord) m, uint slot) {
     return m.coat_roughness_v_texture;
 }
 
-// The shading normal and tangent of a surface displaced along its normal: `displaced` holds the displacement after a step in u,
-// after a step in v, and here (Blinn 1978; pbrt, 4th edition, equations 10.11 and 10.12).
+// Replaces the shading normal and tangent by those of the surface displaced along its normal. `displaced` has the
+// displacement after a step in u, after a step in v, and at the point itself (Blinn 1978; pbrt, 4th edition, equations
+// 10.11 and 10.12).
 FN void apply_bump(INOUT(Surface) s, vec3 displaced) {
-    // Tangents of the smooth surface that the shading normals pretend: the true ones, laid into its plane.
+    // Tangents of the smooth surface that the shading normals imply: the true tangents, projected onto its tangent
+    // plane.
     vec3 dpdu = s.dpdu - s.ns * dot3(s.ns, s.dpdu);
     vec3 dpdv = s.dpdv - s.ns * dot3(s.ns, s.dpdv);
     dpdu = dpdu + ((displaced.x - displaced.z) / BUMP_STEP) * s.ns + displaced.z * s.dndu;
@@ -51,7 +53,8 @@ FN void apply_bump(INOUT(Surface) s, vec3 displaced) {
     s.dpdu = dpdu;
 }
 
-// The shading normal from a map of normals in the tangent frame, which holds (n + 1) / 2 (pbrt, 4th edition, section 10.5.3).
+// Replaces the shading normal by that of a tangent-space normal map, which contains (n + 1) / 2 (pbrt, 4th edition,
+// section 10.5.3).
 FN void apply_normal_map(INOUT(Surface) s, uint image) {
     vec4 found = image_lookup(image, vec2(s.uv.x, 1.0f - s.uv.y));
     vec3 n = vec3(2.0f * found.x - 1.0f, 2.0f * found.y - 1.0f, 2.0f * found.z - 1.0f);
@@ -64,8 +67,8 @@ FN bool material_is_textured(IN(MaterialRecord) m) {
             m.thickness_texture & m.coat_roughness_u_texture & m.coat_roughness_v_texture) != NONE;
 }
 
-// Puts the values of textures into the record's slots, and bends the shading normal where there is a bump map. One loop with one
-// call: a GLSL compiler inlines each evaluation of a program.
+// Evaluates the textures of the record's slots, and applies the bump map, if any. One loop with one call, because a
+// GLSL compiler inlines every call of texture_color.
 FN void material_textures(INOUT(MaterialRecord) m, INOUT(Surface) s) {
     bool bumped = HAS(EFFECT_BUMP) && m.bump_texture != NONE;
     bool textured = HAS(EFFECT_TEXTURES) && material_is_textured(m);
@@ -110,8 +113,9 @@ FN void material_textures(INOUT(MaterialRecord) m, INOUT(Surface) s) {
     if (bumped) apply_bump(s, displaced);
 }
 
-// The Bsdf at s, and the frame in which it is meant: z is the shading normal. wo, the direction that light leaves in, and the
-// frame's axes are in world space. s.ns and s.dpdu are those of the bump or normal map afterwards, s.material is never a mix.
+// The Bsdf at s, and its local frame, whose z is the shading normal. wo, the direction in which light leaves, and the
+// frame's axes are in world space. Afterwards s.ns and s.dpdu include the bump or normal map, and s.material is not a
+// mix.
 FN Bsdf material_bsdf(INOUT(Surface) s, vec3 wo, OUT(Frame) frame) {
     if (HAS(EFFECT_MATERIAL_MIX) && RARELY(materials[s.material].kind == MATERIAL_MIX)) {
         Surface mixed = s;
@@ -125,7 +129,7 @@ FN Bsdf material_bsdf(INOUT(Surface) s, vec3 wo, OUT(Frame) frame) {
     if (HAS(EFFECT_BUMP) && m.normal_map != NONE) apply_normal_map(s, m.normal_map);
 
     Bsdf b = bsdf_of_record(m);
-    // Only anisotropic roughness asks where the tangent points.
+    // Only anisotropic roughness depends on the tangent.
     bool oriented = CALLED_FOR(EFFECT_ANISOTROPIC) && (b.alpha.x != b.alpha.y || b.alpha_base.x != b.alpha_base.y);
     if (oriented)
         frame = frame_from_xz(s.dpdu, s.ns);

@@ -22,7 +22,7 @@ FN vec3 lerp3_of(float t, vec3 a, vec3 b) { return (1.0f - t) * a + t * b; }
 FN float copy_sign(float magnitude, float sign_of) {
     return uintBitsToFloat((floatBitsToUint(magnitude) & 0x7fffffffu) | (floatBitsToUint(sign_of) & 0x80000000u));
 }
-// Swaps a and b if told to, without a branch: of random numbers no processor foresees which is larger.
+// Swaps a and b if `swapped` is true, without a branch: which of two random numbers is larger is unpredictable.
 FN void swap_if(bool swapped, INOUT(float) a, INOUT(float) b) {
     uint difference = (floatBitsToUint(a) ^ floatBitsToUint(b)) & (0u - uint(swapped));
     a = uintBitsToFloat(floatBitsToUint(a) ^ difference);
@@ -38,7 +38,7 @@ FN float distance_of(vec3 a, vec3 b) { return length_of(a - b); }
 FN vec3 unit(vec3 v) { return v * (1.0f / sqrt(v.x * v.x + v.y * v.y + v.z * v.z)); }
 FN float abs_dot(vec3 a, vec3 b) { return abs(dot3(a, b)); }
 FN vec3 cross3(vec3 a, vec3 b) { return vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x); }
-// v, turned to the side of n.
+// v or -v, whichever is on the side of n.
 FN vec3 face_forward(vec3 v, vec3 n) { return dot3(v, n) < 0.0f ? -v : v; }
 FN float luminance(vec3 rgb) { return 0.2126f * rgb.x + 0.7152f * rgb.y + 0.0722f * rgb.z; }  // Rec. 709
 FN bool is_finite(float x) { return (floatBitsToUint(x) & 0x7f800000u) != 0x7f800000u; }
@@ -55,7 +55,7 @@ FN void sin_cos_of_octant(float x, OUT(float) s, OUT(float) c) {
 
 // The same for |x| up to a few thousand.
 FN void sin_cos(float x, OUT(float) s, OUT(float) c) {
-    int n = int(x * 0.636619772367581f + copy_sign(0.5f, x));  // to the nearest; floor is a long way without SSE 4.1
+    int n = int(x * 0.636619772367581f + copy_sign(0.5f, x));  // rounds to nearest; floor is slow without SSE 4.1
     float q = float(n);
     float y = ((x - q * 1.5703125f) - q * 4.837512969970703125e-4f) - q * 7.549789954891882e-8f;
     float sine;
@@ -169,7 +169,7 @@ struct Frame {
     vec3 z;
 };
 
-// Orthonormal frame about a unit z (Duff et al. 2017, "Building an Orthonormal Basis, Revisited").
+// Orthonormal frame with the given unit z (Duff et al. 2017, "Building an Orthonormal Basis, Revisited").
 FN Frame frame_from_z(vec3 z) {
     float s = copy_sign(1.0f, z.z);
     float a = -1.0f / (s + z.z);
@@ -181,7 +181,7 @@ FN Frame frame_from_z(vec3 z) {
     return frame;
 }
 
-// Frame with unit z whose x is the part of `x` orthogonal to z; any x where they are parallel.
+// Frame with unit z whose x is the part of `x` orthogonal to z; an arbitrary x if they are parallel.
 FN Frame frame_from_xz(vec3 x, vec3 z) {
     vec3 t = x - z * dot3(x, z);
     float l2 = length_squared(t);
@@ -204,12 +204,13 @@ FN vec3 transform_vector(vec4 r0, vec4 r1, vec4 r2, vec3 v) {
     return vec3(r0.x * v.x + r0.y * v.y + r0.z * v.z, r1.x * v.x + r1.y * v.y + r1.z * v.z,
                 r2.x * v.x + r2.y * v.y + r2.z * v.z);
 }
-// A normal by the transform whose *inverse* has the rows given: multiplication by the inverse's transpose. Not unit length.
+// Transforms a normal, given the rows of the transform's *inverse*: multiplies by the inverse's transpose. The result
+// is not of unit length.
 FN vec3 transform_normal(vec4 i0, vec4 i1, vec4 i2, vec3 n) {
     return vec3(i0.x * n.x + i1.x * n.y + i2.x * n.z, i0.y * n.x + i1.y * n.y + i2.y * n.z,
                 i0.z * n.x + i1.z * n.y + i2.z * n.z);
 }
-// Bound of the error of transform_point applied to p with error e (pbrt, 4th edition, section 6.8.6).
+// Bound of the error of transform_point for p with error e (pbrt, 4th edition, section 6.8.6).
 FN vec3 transform_error(vec4 r0, vec4 r1, vec4 r2, vec3 p, vec3 e) {
     float g = gamma_bound(3.0f);
     vec3 a = abs(p);
@@ -222,11 +223,12 @@ FN vec3 transform_error(vec4 r0, vec4 r1, vec4 r2, vec3 p, vec3 e) {
     return (g + 1.0f) * carried + g * from_rounding;
 }
 
-// The way along the normal ng that leads out of p's error box (pbrt, 4th edition, section 6.8.6), longer than the box asks for by
-// four times what rounding the sum with p can take back. It follows the float error at the hit, not a scene-wide epsilon.
+// Offset along the normal ng that leads out of p's error box (pbrt, 4th edition, section 6.8.6). It is longer than the
+// box requires, by four times the rounding error of its sum with p. It depends on the float error at the hit, not on a
+// scene-wide epsilon.
 FN vec3 way_out(vec3 p, vec3 error, vec3 ng) { return dot3(abs(ng), error + (4.0f * MACHINE_EPSILON) * abs(p)) * ng; }
 
-// Where a ray towards `direction` starts: on the direction's side of the surface at p.
+// The origin of a ray from p in `direction`: on the direction's side of the surface. `way` is from way_out.
 FN vec3 origin_beyond(vec3 p, vec3 way, vec3 direction) { return p + copy_sign(1.0f, dot3(direction, way)) * way; }
 FN vec3 offset_origin(vec3 p, vec3 error, vec3 ng, vec3 direction) {
     return origin_beyond(p, way_out(p, error, ng), direction);

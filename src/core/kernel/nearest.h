@@ -1,30 +1,31 @@
-// The photons nearest to a query, for consumers that look for them with any structure that hands over each photon in range.
+// The photons nearest to a query, for consumers that use any structure that passes on every photon in range.
 #ifndef LAMPYRIS_KERNEL_NEAREST
 #define LAMPYRIS_KERNEL_NEAREST
 
 #include "core/kernel/photon.h"
 
-// Most that one can ask for. One more is kept: the disk ends there.
+// Maximum number of photons. One more is kept, because the disk ends at it.
 CONST uint NEAREST_MOST = 256u;
 
-// The invocation's own: a heap whose root is the farthest, once `places` photons are there. The order is that of (squared distance,
-// key): the same set, however the structure hands photons over. Arrays in a struct would be copied by each call in GLSL.
-PRIVATE(uvec3, nearest_items,
-        NEAREST_MOST + 1u)  // squared distance (bits: they are in the order of floats >= 0), key, which flux
+// Per invocation: a heap with the farthest photon at its root, once there are `places` photons. They are ordered by
+// (squared distance, key), so that the set does not depend on the order in which the structure finds them. These arrays
+// are not members of Nearest, because GLSL would copy them at every call. An item is the squared distance (bits, which
+// have the order of floats >= 0), the key, and the index of the flux.
+PRIVATE(uvec3, nearest_items, NEAREST_MOST + 1u)
 PRIVATE(uvec4, nearest_fluxes, NEAREST_MOST + 1u)
 
 struct Nearest {
     uint places;
     uint count;
-    float limit;  // squared distance beyond which no photon is wanted any more
+    float limit;  // squared distance beyond which photons are ignored
 };
 
 FN bool nearest_before(uvec3 a, uvec3 b) { return a.x < b.x || (a.x == b.x && a.y < b.y); }
 
-// The item sinks into the heap of the first `count` from `root` on.
+// Sifts the item down from `root` in the heap of the first `count` items.
 FN void nearest_sink(uint root, uint count, uvec3 item) {
     uint hole = root;
-    // One level a step: the bound is never met, unless the driver ends the loop early.
+    // One level per step, so the bound is never reached.
     uint step = 0u;
     for (; step != 32u && 2u * hole + 1u < count; ++step) {
         uint child = 2u * hole + 1u;
@@ -40,7 +41,7 @@ FN void nearest_heap(uint count) {
     for (uint left = count / 2u; left > 0u; --left) nearest_sink(left - 1u, count, nearest_items[left - 1u]);
 }
 
-// `photons`: how many to find; `radius_squared`: how far to look.
+// `photons`: how many to find, within the squared radius.
 FN Nearest nearest_begin(uint photons, float radius_squared) {
     Nearest n;
     n.places = min(photons, NEAREST_MOST) + 1u;
@@ -66,11 +67,12 @@ FN void nearest_add(INOUT(Nearest) n, IN(PhotonRecord) photon, float distance_sq
     n.limit = uintBitsToFloat(nearest_items[0u].x);
 }
 
-// Call last: sorts what was found, nearest first. Returns how many photons to count, and the squared radius of the disk that they
-// fill: the k nearest and the distance of the next; where there is none, all and the radius of the query.
+// Call last. Sorts the photons, nearest first. Returns how many of them to count, and the squared radius of the disk
+// that they fill: the k nearest and the distance of the next one; if there is none, all of them and the query's radius.
 //
-// Counting k photons over the disk that ends at the next one (k - 1 over that of the k-th: Garcia Hernandez et al. 2012) is unbiased
-// where photons are Poisson distributed with a constant density, whatever the radius of the query (docs/photon-maps.md).
+// Counting k photons over the disk that ends at the next one (or k - 1 over that of the k-th: Garcia Hernandez et al.
+// 2012) is unbiased if photons are Poisson distributed with constant density, for any query radius
+// (docs/photon-maps.md).
 FN uint nearest_end(IN(Nearest) n, float radius_squared, OUT(float) disk) {
     bool full = n.count == n.places;
     disk = max(full ? n.limit : radius_squared, SMALLEST_RADIUS_SQUARED);
@@ -83,7 +85,7 @@ FN uint nearest_end(IN(Nearest) n, float radius_squared, OUT(float) disk) {
     return full ? n.count - 1u : n.count;
 }
 
-// The i-th of the nearest: its key and flux. Where it lies is not kept.
+// Key and flux of the i-th nearest photon. Its position is not kept.
 FN PhotonRecord nearest_photon(uint i) {
     PhotonRecord photon;
     photon.place = uvec4(0u, 0u, 0u, nearest_items[i].y);

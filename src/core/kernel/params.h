@@ -1,8 +1,8 @@
 // Parameters of an integrator or a photon map, declared once for both compilers:
 //     #define AO_PARAMS(P) P(int, rays, 4, 1, 1024, "occlusion rays per camera hit") ...
 //     PARAMS(AoParams, AO_PARAMS)
-// A parameter is P(type, name, default, minimum, maximum, documentation); type is int, uint or float. The host makes
-// specs of the same list with PARAMETER_FIELDS (core/base/parameters.h).
+// A parameter is P(type, name, default, minimum, maximum, documentation); type is int, uint or float. The host
+// generates its specs from the same list with PARAMETER_FIELDS (core/base/parameters.h).
 #ifndef LAMPYRIS_KERNEL_PARAMS
 #define LAMPYRIS_KERNEL_PARAMS
 

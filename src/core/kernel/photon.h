@@ -1,4 +1,4 @@
-// Photons: packing, and the one test of what is in range.
+// Photons: packing, and the range test of all structures.
 #ifndef LAMPYRIS_KERNEL_PHOTON
 #define LAMPYRIS_KERNEL_PHOTON
 
@@ -9,7 +9,7 @@
 #include "core/kernel/spectrum.h"
 #include "core/kernel/random.h"
 
-// Octahedral map (Meyer et al. 2010), 16 bits a coordinate: the direction that comes back is off by less than 7e-5 radian,
+// Octahedral map (Meyer et al. 2010), 16 bits per coordinate: an unpacked direction is off by less than 7e-5 radians,
 // and exact on the axes.
 FN uint direction_pack(vec3 d) {
     float l1 = abs(d.x) + abs(d.y) + abs(d.z);
@@ -43,26 +43,27 @@ FN PhotonRecord photon_pack(vec3 position, vec3 direction, Spectrum power, uint 
                    floatBitsToUint(power[2]));
     return p;
 }
-// Of photon number `number` of a path: unique as long as (number + 1) * paths <= 2^32.
+// The key of a path's photon `number`: unique if (number + 1) * paths <= 2^32.
 FN uint photon_key(uint path, uint number, uint paths) { return number * paths + path; }
 FN vec3 place_position(uvec4 place) {
     return vec3(uintBitsToFloat(place.x), uintBitsToFloat(place.y), uintBitsToFloat(place.z));
 }
 FN vec3 photon_position(IN(PhotonRecord) p) { return place_position(p.place); }
-FN vec3 photon_direction(IN(PhotonRecord) p) { return direction_unpack(p.flux.x); }  // of flight: towards the surface
+FN vec3 photon_direction(IN(PhotonRecord) p) { return direction_unpack(p.flux.x); }  // of flight, towards the surface
 FN Spectrum photon_power(IN(PhotonRecord) p) {
     return Spectrum(uintBitsToFloat(p.flux.y), uintBitsToFloat(p.flux.z), uintBitsToFloat(p.flux.w));
 }
 
-// In range is this and nothing else, for every structure. A radius below 3e-19 is that: smaller squares underflow, which not every
-// device does alike.
+// The range test that every structure uses. A radius below 3e-19 counts as 3e-19: smaller squares underflow, and not
+// equally on every device.
 CONST float SMALLEST_RADIUS_SQUARED = 1e-37f;
 FN bool in_range(vec3 position, vec3 query, float radius, OUT(float) distance_squared) {
     vec3 d = position - query;
     distance_squared = d.x * d.x + d.y * d.y + d.z * d.z;
     return distance_squared <= max(radius * radius, SMALLEST_RADIUS_SQUARED);
 }
-// Per coordinate, no photon in range lies farther from the query than this: the rounding of in_range, and its smallest radius.
+// Bound, per coordinate, of the distance of a photon in range from the query. It includes the rounding of in_range, and
+// its smallest radius.
 FN float range_reach(float radius) { return max(radius * 1.000001f, 4e-19f); }
 
 #endif

@@ -1,4 +1,4 @@
-// Adds a range of samples to a pixel: the end of every kernel that is made of a radiance function (core/kernel/radiance.h).
+// Adds a range of samples to a pixel. The build appends this file to every radiance function (core/kernel/radiance.h).
 
 BUFFER_RO(0, FilmWindow, window)
 BUFFER_RW(2, FilmPixel, film)

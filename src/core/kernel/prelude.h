@@ -2,7 +2,7 @@
 //
 // glslang compiles kernel files to SPIR-V; the C++ compiler builds the same files inside a class template
 // (`template <EffectSet kEffects> struct Kernel { ... };`, see cpp_kernel.h), where buffers become member pointers.
-// This is the only kernel file that asks which of the two compilers reads it. docs/kernel-dialect.md explains the rules.
+// Only this file and scene.h test which of the two compilers reads them. docs/kernel-dialect.md explains the rules.
 #ifndef LAMPYRIS_KERNEL_PRELUDE
 #define LAMPYRIS_KERNEL_PRELUDE
 
@@ -14,8 +14,8 @@
 #define OUT(T) T&
 #define INOUT(T) T&
 #define CONST static constexpr
-// A function that few scenes call. C++ compilers do not inline it: what it needs takes no registers from what all scenes run.
-// Give it copies of structs: one whose address is known to another function stays in memory.
+// A function that few scenes call. C++ compilers do not inline it, so that it takes no registers from code that all
+// scenes run. Pass it copies of structs: a struct whose address another function gets stays in memory.
 #define RARE_FN inline __attribute__((noinline))
 #define RARELY(condition) __builtin_expect((condition), false)
 #ifdef KERNEL_INLINE_ALL
@@ -23,10 +23,10 @@
 #else
 #define FN inline
 #endif
-// Buffers of the scene (set 0) and of the kernel (set 1): `scene_buffers_` and `kernel_buffers_` are the instance's two tables. The
-// latter hears each buffer's name and the size of its elements, for who runs the kernel names what it gives.
+// Buffers of the scene (set 0) and of the kernel (set 1): `scene_buffers_` and `kernel_buffers_` are the tables of a
+// Kernel instance. The latter also gets each buffer's name and element size, because callers pass buffers by name.
 #define SCENE_RO(binding_, T, name) const T* __restrict name = static_cast<const T*>(scene_buffers_[binding_]);
-// An array of pairs of vec4, which READ_PAIR reads as a VecPair at once (see below).
+// An array of pairs of vec4. READ_PAIR reads one pair at once, as a VecPair (see below).
 #define SCENE_RO_PAIRS(binding_, name) SCENE_RO(binding_, VecPair, name)
 #define READ_PAIR(name, i) name[i]
 #define BUFFER_RO(binding_, T, name) \
@@ -36,25 +36,27 @@
 #define HAS(effect) ((kEffects & (effect)) != 0u)
 #define EFFECTS_LOW(effects) uint(effects)
 #define EFFECTS_HIGH(effects) uint((effects) >> 32u)
-// An array of the invocation's own that several functions use; what it holds is indeterminate at first. GLSL copies a struct with an
-// array, element by element, at each call that it is given to.
+// An array per invocation that several functions use; its initial values are indeterminate. (GLSL would copy a struct
+// with an array, element by element, at each call that it is passed to.)
 #define PRIVATE(T, name, count) T name[count] = {};
 // The function that runs once per index; one per kernel file.
 #define KERNEL(name) inline void kernel_main(uint index)
-// Atomics return the old value. ATOMIC_STORE_U32 is for words that several invocations race for, in which any of them may win.
+// Atomics return the old value. ATOMIC_STORE_U32 is for words to which several invocations write at once; any of them
+// may win.
 #define ATOMIC_ADD_U32(place, value) atomic_add_u32(&(place), value)
 #define ATOMIC_OR_U32(place, value) atomic_or_u32(&(place), value)
 #define ATOMIC_MAX_U32(place, value) atomic_max_u32(&(place), value)
 #define ATOMIC_EXCHANGE_U32(place, value) atomic_exchange_u32(&(place), value)
 #define ATOMIC_COMPARE_SWAP_U32(place, expected, value) atomic_compare_swap_u32(&(place), expected, value)
 #define ATOMIC_STORE_U32(place, value) atomic_store_u32(&(place), value)
-// On 64 bits: a device may lack them (DeviceFeature::kInt64Atomics).
+// 64-bit atomics, which a device may lack (DeviceFeature::kInt64Atomics).
 #define ATOMIC_ADD_U64(place, value) atomic_add_u64(&(place), value)
 #define ATOMIC_MAX_U64(place, value) atomic_max_u64(&(place), value)
-// Says that a place will be read or written soon; a GPU hides the latency by itself.
+// Announces that `place` will soon be read or written; a GPU hides the latency by itself.
 #define PREFETCH(place) __builtin_prefetch(&(place))
-// A kernel says that it could not do all of its work (a loop's bound or a stack was not enough, or the driver ended a loop
-// early: Mesa 22 does after 65,535 iterations). Device::run then throws; an image is never silently dark.
+// Reports that the kernel could not finish its work: a loop's bound or a stack was too small, or the driver ended a
+// loop early (Mesa 22 does after 65,535 iterations). Device::run then throws, so that an image is never silently too
+// dark.
 #define REPORT_UNFINISHED() report_unfinished(unfinished_)
 CONST bool DRIVERS_END_LOOPS = false;
 #else
@@ -74,8 +76,8 @@ CONST bool DRIVERS_END_LOOPS = false;
 #define SCENE_RO(binding_, T, name) \
     layout(std430, set = 0, binding = binding_) readonly restrict buffer name##Block { T name[]; };
 #ifdef KERNEL_WIDE_READS
-// A driver that is a CPU reads component after component of lane after lane, and checks each place against the buffer's size:
-// half as many, twice as wide, are cheaper.
+// A CPU driver reads the components of each lane one by one, and checks each against the buffer's size: half as many
+// reads of twice the width are cheaper.
 #define SCENE_RO_PAIRS(binding_, name) SCENE_RO(binding_, u64vec4, name)
 #define READ_PAIR(name, i) pair_of_words(name[i])
 #else
@@ -120,10 +122,10 @@ VecPair pair_of_words(u64vec4 w) { return VecPair(vec_of_words(w.xy), vec_of_wor
 #endif
 #endif
 
-// Kernels that touch memory at random handle BATCH items an invocation, so that the CPU can ask for all of their places
-// before it uses the first. The k-th item of an invocation lies where each kind of machine likes to read: next to the one before on a
-// CPU, next to the neighbouring invocation's on a GPU. The host runs batch_count(n) invocations (core/device/device.h); an item may
-// lie beyond the last one.
+// Kernels that access memory at random handle BATCH items per invocation, so that the CPU can prefetch all of them
+// before it uses the first. On a CPU, an invocation's items are adjacent. On a GPU, item k is adjacent to the k-th item
+// of the neighbouring invocation, so that accesses coalesce. The host runs batch_count(n) invocations (core/device/device.h);
+// the last items may be beyond n.
 CONST uint BATCH = 16u;
 #ifdef __cplusplus
 FN uint batch_item(uint index, uint k) { return index * BATCH + k; }

@@ -1,16 +1,17 @@
 // Spheres, disks and cylinders, whole or in part (zmin, zmax, phimax), under any affine transform.
 //
-// In their own space: spheres about the origin, disks at z = height about the z axis, cylinders about the z axis; u = phi /
-// phimax, v along z (disk: inwards), as in pbrt (4th edition, sections 6.2 to 6.4). Normals point outward (disk: +z).
+// In their own space, spheres are centred at the origin, disks are at z = height around the z axis, and cylinders are
+// around the z axis; u = phi / phimax, v along z (disk: inwards), as in pbrt (4th edition, sections 6.2 to 6.4).
+// Normals point outward (disk: +z).
 #ifndef LAMPYRIS_KERNEL_QUADRIC
 #define LAMPYRIS_KERNEL_QUADRIC
 
-// Bound of the relative error that going to the quadric's space and back brings to a point: two affine transforms (gamma_3
-// each, pbrt section 6.8.6) whose matrices are themselves rounded. The same bound is the width of the zone about the surface
-// in which a ray's origin counts as on it, so that rays that start at the surface do not find it again.
+// Bound of the relative error of transforming a point to the quadric's space and back: two affine transforms (gamma_3
+// each, pbrt section 6.8.6), whose matrices are rounded, too. A ray's origin within this bound of the surface counts as
+// on it, so that rays that start on the surface do not hit it again.
 FN float quadric_bound() { return gamma_bound(8.0f); }
 
-// |rows| (|p|, 1): what the rounding of an affine transform of p is relative to.
+// |rows| (|p|, 1): the rounding error of an affine transform of p is proportional to this.
 FN vec3 transform_magnitude(vec4 r0, vec4 r1, vec4 r2, vec3 p) {
     return transform_point(abs(r0), abs(r1), abs(r2), abs(p));
 }
@@ -21,7 +22,7 @@ FN float quadric_phi(vec3 p) {
     return phi < 0.0f ? phi + TWO_PI : phi;
 }
 
-// Whether p (in the quadric's space) is on the part that exists.
+// Whether p (in the quadric's space) is on the part of the surface that zmin, zmax, phimax or the radii include.
 FN bool quadric_has_point(uint kind, IN(Quadric) q, vec3 p) {
     if (kind == GEOMETRY_SPHERE) {
         if ((q.z_min > -q.radius && p.z < q.z_min) || (q.z_max < q.radius && p.z > q.z_max)) return false;
@@ -38,10 +39,10 @@ FN bool quadric_has_point(uint kind, IN(Quadric) q, vec3 p) {
 
 // The first hit with 0 < t < t_max, and its point in the quadric's space, moved onto the surface.
 //
-// Spheres and cylinders: the unit sphere (or circle) met by a unit direction. The discriminant is that of Haines, Gunther
-// and Akenine-Moeller, "Precision Improvements for Ray/Sphere Intersection" (Ray Tracing Gems, 2019, equation 5): 1 - l.l
-// for the point l of the line nearest to the centre, which does not cancel for far or small spheres; of the two roots one
-// is q, the other c / q, so that neither cancels (equations 8 and 9).
+// Spheres and cylinders are intersected as a unit sphere (or circle) with a unit direction. The discriminant is that of
+// Haines, Gunther and Akenine-Moeller, "Precision Improvements for Ray/Sphere Intersection" (Ray Tracing Gems, 2019,
+// equation 5): 1 - l.l, where l is the point of the line nearest to the centre. It does not cancel for far or small
+// spheres. One root is q, the other c / q, so that neither cancels (equations 8 and 9).
 FN bool quadric_solve(uint geometry, vec3 set_origin, vec3 set_direction, float t_max, OUT(float) t, OUT(vec3) p) {
     GeometryRecord g = geometries[geometry];
     TransformRecord m = transforms[g.transform];
@@ -72,7 +73,7 @@ FN bool quadric_solve(uint geometry, vec3 set_origin, vec3 set_direction, float 
     if (!(discriminant >= 0.0f)) return false;
     float s = sqrt(discriminant);
     float q = b >= 0.0f ? b + s : b - s;
-    if (q == 0.0f) return false;  // touches the surface at its origin
+    if (q == 0.0f) return false;  // the ray touches the surface at its origin
     float f2 = length_squared(f);
     float c = f2 - 1.0f;
     // Far from the surface b and s do not cancel, and c / q could overflow.
@@ -111,8 +112,8 @@ FN vec3 quadric_outward(uint kind, IN(Quadric) q, vec3 p) {
     return vec3(0.0f, 0.0f, 1.0f);
 }
 
-// The geometric normal at p (quadric's space) as the set sees it: not unit length; its length times |det| of the transform
-// is the factor by which the transform stretches area there.
+// The geometric normal at p (quadric's space) in the space of the geometry's set. It is not of unit length: its length
+// times |det| of the transform is the factor by which the transform stretches area at p.
 FN vec3 quadric_set_normal(uint geometry, vec3 p) {
     GeometryRecord g = geometries[geometry];
     TransformRecord m = transforms[g.transform];
@@ -137,7 +138,7 @@ FN vec2 quadric_uv(uint kind, IN(Quadric) q, vec3 p) {
     return vec2(u, (1.0f - sqrt(x * x + y * y)) / (1.0f - q.inner_radius / q.radius));
 }
 
-// Position and rounding error of p (quadric's space, on the surface) in the set's space.
+// Position and rounding error, in the set's space, of the surface point p (quadric's space).
 FN vec3 quadric_set_position(uint geometry, vec3 p, OUT(vec3) error) {
     GeometryRecord g = geometries[geometry];
     TransformRecord m = transforms[g.transform];
@@ -149,7 +150,8 @@ FN vec3 quadric_set_position(uint geometry, vec3 p, OUT(vec3) error) {
     return transform_point(m.to0, m.to1, m.to2, p);
 }
 
-// Texture coordinates and tangents of the surface at p (quadric's space), whose set normal has the length given.
+// Texture coordinates and tangents of the surface at p (quadric's space), given the length of the normal in the set's
+// space.
 FN void quadric_fill_uv(uint geometry, vec3 p, float normal_length, INOUT(Surface) s) {
     GeometryRecord g = geometries[geometry];
     TransformRecord m = transforms[g.transform];
@@ -187,7 +189,7 @@ FN void quadric_fill_uv(uint geometry, vec3 p, float normal_length, INOUT(Surfac
     }
 }
 
-// Fills everything of the surface at p (quadric's space) but distance, ids, material and light.
+// Fills in the surface at p (quadric's space), except for distance, ids, material and light.
 FN void quadric_fill(uint geometry, vec3 p, INOUT(Surface) s) {
     s.position = quadric_set_position(geometry, p, s.error);
     vec3 n = quadric_set_normal(geometry, p);
@@ -202,7 +204,7 @@ FN void quadric_fill(uint geometry, vec3 p, INOUT(Surface) s) {
     if (surface_needs_uv()) quadric_fill_uv(geometry, p, n_length, s);
 }
 
-// The surface where a ray that hits the quadric meets it first; false (and s unchanged) where it does not.
+// The ray's first hit on the quadric; false (and s unchanged) if there is none.
 FN bool quadric_surface(uint geometry, vec3 o, vec3 d, INOUT(Surface) s) {
     float t;
     vec3 p;

@@ -1,8 +1,8 @@
-// What a radiance function sees. A file NAME.radiance.h defines
+// What radiance functions include. A file NAME.radiance.h defines
 //     FN Spectrum radiance_along(IN(Ray) ray, INOUT(Sampler) numbers, INOUT(FirstHit) first)
-// the radiance that arrives at the camera along a ray (W/(m^2 sr), linear Rec. 709), and is a kernel: the build completes it with
+// the radiance that arrives at the camera along a ray (W/(m^2 sr), linear Rec. 709). The build completes it to a kernel with
 // core/kernel/pixel_loop.h, which has camera, film and loops. Random numbers begin at dimension CAMERA_DIMENSIONS. The
-// function's parameters are the buffer of binding 1; the host's part is render_samples (core/render/integrator.h).
+// integrator's parameters are the buffer at binding 1; render_samples (core/render/integrator.h) is the host's part.
 #ifndef LAMPYRIS_KERNEL_RADIANCE
 #define LAMPYRIS_KERNEL_RADIANCE
 

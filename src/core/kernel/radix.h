@@ -1,5 +1,6 @@
-// Radix sort of (key, value) pairs by 32-bit keys, stable: blocks count their digits, prefix sums say where each block's go,
-// and each block moves its pairs there, in order. One invocation a block: no shared memory, the same code on every machine.
+// Stable radix sort of (key, value) pairs by 32-bit keys: each block counts its digits, prefix sums give the positions
+// of each block's digits, and each block moves its pairs there, in order. One invocation per block: no shared memory,
+// and the same code on every machine.
 #ifndef LAMPYRIS_KERNEL_RADIX
 #define LAMPYRIS_KERNEL_RADIX
 

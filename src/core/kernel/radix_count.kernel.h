@@ -1,4 +1,4 @@
-// One pass of a radix sort, first step: how often each digit occurs in each block of keys.
+// One pass of a radix sort, first step: counts how often each digit occurs in each block of keys.
 #include "core/kernel/radix.h"
 
 BUFFER_RO(0, uvec4, arguments)  // x: number of pairs, y: number of blocks, z: shift of the digit

@@ -1,4 +1,4 @@
-// One pass of a radix sort, last step: each block's pairs, in order, to where its digits go.
+// One pass of a radix sort, last step: moves each block's pairs, in order, to the positions of their digits.
 #include "core/kernel/radix.h"
 
 BUFFER_RO(0, uvec4, arguments)  // as in radix_count

@@ -14,7 +14,7 @@ FN uint hash32(uint x) {
 }
 FN uint hash_combine(uint a, uint b) { return hash32(a ^ (b * 0x9e3779b9u + 0x7f4a7c15u + (a << 6u) + (a >> 2u))); }
 
-// Three words from three (Jarzynski and Olano 2020, "Hash Functions for GPU Rendering": pcg3d).
+// Hashes three words to three words (Jarzynski and Olano 2020, "Hash Functions for GPU Rendering": pcg3d).
 FN uvec3 pcg3d(uvec3 v) {
     v = v * 1664525u + uvec3(1013904223u);
     v.x += v.y * v.z;
@@ -33,8 +33,8 @@ FN uvec3 pcg3d(uvec3 v) {
 FN float unit_float(uint bits) { return float(bits >> 8u) * 5.9604644775390625e-8f; }
 FN vec2 unit_floats(uvec2 bits) { return vec2(unit_float(bits.x), unit_float(bits.y)); }
 
-// A probability in [0, 1] rounded up to what `u < chance` has for a unit_float u: what is weighted by its inverse must be kept
-// exactly that often, however small it is.
+// Rounds a probability in [0, 1] up to the probability that `u < chance` has for a unit_float u: whatever is weighted
+// by its inverse must be kept exactly that often, however small it is.
 FN float exact_chance(float chance) { return ceil(chance * 16777216.0f) * 5.9604644775390625e-8f; }
 
 // Owen scrambling of bit-reversed numbers by hashing (Laine and Karras 2011, constants by Vegdahl 2021; used as in Burley
@@ -60,8 +60,8 @@ FN uint sobol_second_reversed(uint x) {
 }
 
 struct Sampler {
-    uint key;        // of seed and pixel
-    uint reversed;   // the sample's index, bits in reverse order
+    uint key;        // hash of seed and pixel
+    uint reversed;   // the sample's index, with its bits reversed
     uint index;      // of the sample
     uint dimension;  // of the next number
     uint kind;
@@ -77,14 +77,14 @@ FN Sampler sampler_begin(uint pixel, uint sample_index, uint seed, uint kind) {
     return s;
 }
 
-// Seeds of scramblings that are independent of each other, down to the lowest bit, which decides over the highest of a number;
-// from one seed that is well mixed already.
+// Seeds of independent scramblings, from one seed that is already well mixed. They must be independent down to the
+// lowest bit, which determines the highest bit of a number.
 FN uint scramble_seed(uint seed, uint which) {
     uint mixed = (seed ^ (0xa511e9b3u + which * 0xbea24c72u)) * 0x9e3779b1u;
     return mixed ^ (mixed >> 15u);
 }
 
-// The numbers of a point, bit-reversed and not yet scrambled, in the way `way` of scrambling them.
+// Scrambles the numbers of a point, given with reversed bits; `way` is the index of the scrambling.
 FN uvec2 scrambled_point(uvec2 reversed, uint seed, uint way) {
     uint x = scramble_reversed(reversed.x, scramble_seed(seed, 2u * way));
     uint y = scramble_reversed(reversed.y, scramble_seed(seed, 2u * way + 1u));
@@ -96,8 +96,9 @@ FN uvec2 independent_2d(IN(Sampler) s, uint dimension) {
     return uvec2(bits.x, bits.y);
 }
 
-// A number by its dimension, for those who skip what they do not need: a dimension keeps its meaning in every sample. The
-// numbers' 32 bits are for choices among many (distribution.h); the numbers in [0, 1) are the same ones.
+// The number of a dimension, for callers that skip numbers that they do not need: a dimension has the same meaning in
+// every sample. The 32 bits are for choices among many (distribution.h); the functions that return numbers in [0, 1)
+// return the same numbers.
 FN uint sample_bits_1d_at(IN(Sampler) s, uint dimension) {
     if (s.kind == SAMPLER_INDEPENDENT) return independent_2d(s, dimension).x;
     uint seed = hash_combine(s.key, dimension);
@@ -115,9 +116,9 @@ FN uvec2 sample_bits_2d_at(IN(Sampler) s, uint dimension) {
 FN float sample_1d_at(IN(Sampler) s, uint dimension) { return unit_float(sample_bits_1d_at(s, dimension)); }
 FN vec2 sample_2d_at(IN(Sampler) s, uint dimension) { return unit_floats(sample_bits_2d_at(s, dimension)); }
 
-// The bits of two pairs of numbers, (x, y) and (z, w), for integrands that are sums of a function of the one and a function of the other:
-// they are one point, scrambled in two ways, so that each pair is stratified, but not both together. Two points of their own
-// would serve such integrands no better. Takes the dimensions of two pairs.
+// The bits of two pairs of numbers, (x, y) and (z, w), for integrands that are the sum of a function of one pair and a
+// function of the other. Both pairs are the same point with two scramblings: each pair is stratified, but not both
+// together. Two separate points would be no better for such integrands. Uses the dimensions of two pairs.
 FN uvec4 sample_bits_2d_2d_at(IN(Sampler) s, uint dimension) {
     uvec2 a;
     uvec2 b;
@@ -134,7 +135,7 @@ FN uvec4 sample_bits_2d_2d_at(IN(Sampler) s, uint dimension) {
     return uvec4(a.x, a.y, b.x, b.y);
 }
 
-// The next numbers.
+// The next number, at the sampler's current dimension.
 FN float sample_1d(INOUT(Sampler) s) {
     s.dimension += 1u;
     return sample_1d_at(s, s.dimension - 1u);

@@ -60,7 +60,7 @@ FN float pdf_exponential(float x, float a) { return a * exp_of(-a * x); }
 
 // ---- Disk and triangle -----------------------------------------------------------------------------------------------
 
-// Uniform on the unit disk; squares about the centre become disks (Shirley and Chiu 1997).
+// Uniform on the unit disk; maps concentric squares to concentric circles (Shirley and Chiu 1997).
 FN vec2 sample_concentric_disk(vec2 u) {
     float x = 2.0f * u.x - 1.0f;
     float y = 2.0f * u.y - 1.0f;
@@ -80,7 +80,7 @@ FN float pdf_concentric_disk() { return INV_PI; }
 // Uniform barycentric coordinates (b0, b1, b2) with little distortion (Heitz 2019, "A Low-Distortion Map Between
 // Triangle and Square"). Density 1 / area of the triangle.
 FN vec3 sample_uniform_triangle(vec2 u) {
-    // The smaller number is halved, exactly, and that half taken off both.
+    // Subtracts half of the smaller number from both; halving is exact.
     float half_of_smaller = 0.5f * min(u.x, u.y);
     float b0 = u.x - half_of_smaller;
     float b1 = u.y - half_of_smaller;
@@ -89,7 +89,7 @@ FN vec3 sample_uniform_triangle(vec2 u) {
 
 // ---- Directions ------------------------------------------------------------------------------------------------------
 
-// About +z, density proportional to the cosine (Malley's method).
+// Around +z, with density proportional to the cosine (Malley's method).
 FN vec3 sample_cosine_hemisphere(vec2 u) {
     vec2 d = sample_concentric_disk(u);
     return vec3(d.x, d.y, safe_sqrt(1.0f - d.x * d.x - d.y * d.y));
@@ -114,7 +114,7 @@ FN vec3 sample_uniform_sphere(vec2 u) {
 }
 FN float pdf_uniform_sphere() { return INV_FOUR_PI; }
 
-// Uniform in the cone about +z of the given 1 - cos(half angle): small cones keep their precision that way.
+// Uniform in the cone around +z with the given 1 - cos(half angle), which keeps its precision for small cones.
 FN vec3 sample_uniform_cone(vec2 u, float one_minus_cos_max) {
     float h = u.x * one_minus_cos_max;
     return spherical_direction(safe_sqrt(h * (2.0f - h)), 1.0f - h, TWO_PI * u.y);
@@ -123,7 +123,8 @@ FN float pdf_uniform_cone(float one_minus_cos_max) { return INV_TWO_PI / one_min
 
 // ---- Henyey and Greenstein's phase function (1941), for |g| <= 0.99 ----------------------------------------------------
 
-// Directions point away from the scattering event, so that `cos_theta` = dot(wo, wi) is -1 straight ahead; 1/sr. It is its own density.
+// Directions point away from the scattering event, so that `cos_theta` = dot(wo, wi) is -1 straight ahead. The value
+// (1/sr) is also the density of sample_henyey_greenstein.
 FN float henyey_greenstein(float cos_theta, float g) {
     float d = 1.0f + g * g + 2.0f * g * cos_theta;
     return INV_FOUR_PI * (1.0f - g * g) / (d * safe_sqrt(d));

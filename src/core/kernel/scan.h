@@ -1,4 +1,5 @@
-// Prefix sums in three steps: the sums of blocks (scan_sum), their own prefix sums, and each block's from there (scan_write).
+// Prefix sums in three steps: the sums of blocks (scan_sum), the prefix sums of those, and prefix sums within each
+// block (scan_write).
 #ifndef LAMPYRIS_KERNEL_SCAN
 #define LAMPYRIS_KERNEL_SCAN
 

@@ -1,4 +1,5 @@
-// Replaces each value of a block by the sum of those before it; `sums` has that of the blocks before, unless there is one block.
+// Replaces each value of a block by the sum of all values before it. `sums` has the sums up to each block; a single
+// block does not need it.
 #include "core/kernel/scan.h"
 
 KERNEL(scan_write) {

@@ -1,4 +1,4 @@
-// Everything a kernel that renders needs, in order: GLSL wants each function before its use.
+// Everything that a rendering kernel needs, ordered so that GLSL has each function before its use.
 #ifndef LAMPYRIS_KERNEL_SCENE
 #define LAMPYRIS_KERNEL_SCENE
 
@@ -27,7 +27,7 @@
 #include "core/kernel/walk.h"
 #include "core/kernel/direct_light.h"
 
-// Whoever runs a kernel that reads the scene calls these around each invocation (entry.glsl, cpu_kernel.cpp.in).
+// Called before and after each invocation of a kernel that reads the scene (entry.glsl, cpu_kernel.cpp.in).
 FN void invocation_begin() {
     traced_rays[0] = 0u;
     walk_turn[0] = 0u;

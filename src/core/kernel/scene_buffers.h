@@ -1,8 +1,9 @@
-// The scene's buffers (set 0), written once: kernels bind them (bindings.h), the host fills them (core/scene/scene_buffers.h).
+// The scene's buffers (set 0): kernels bind them (bindings.h), the host fills them (core/scene/scene_buffers.h).
 #ifndef LAMPYRIS_KERNEL_SCENE_BUFFERS
 #define LAMPYRIS_KERNEL_SCENE_BUFFERS
 
-// ARRAY(binding, type, name, what messages call it): kernels read name[i]; the host's array is Scene's of that name.
+// ARRAY(binding, type, name, name in messages): kernels read name[i]; the host's array is the member of Scene with that
+// name.
 #define LAMPYRIS_SCENE_ARRAYS(ARRAY)                    \
     ARRAY(1, GeometryRecord, geometries, "geometries")  \
     ARRAY(2, uint, indices, "indices")                  \
@@ -19,12 +20,12 @@
     ARRAY(13, uint, distributions, "distributions")     \
     ARRAY(18, MediumRecord, media, "media")
 
-// What is no array of the Scene.
+// Bindings that need more than an upload of an array of Scene.
 CONST uint BINDING_RECORD = 0u;      // SceneRecord
-CONST uint BINDING_INSTANCES = 7u;   // an array, in which a BVH notes its roots
-CONST uint BINDING_BVH_NODES = 14u;  // of the BVH that kernels walk themselves
+CONST uint BINDING_INSTANCES = 7u;   // an array of Scene, in which a BVH writes its root nodes
+CONST uint BINDING_BVH_NODES = 14u;  // of the BVH2, which kernels traverse themselves
 CONST uint BINDING_BVH_TRIANGLES = 15u;
-CONST uint BINDING_TOP_LEVEL = 16u;   // Vulkan's acceleration structure, with ray query
+CONST uint BINDING_TOP_LEVEL = 16u;   // Vulkan's acceleration structure, for ray queries
 CONST uint BINDING_UNFINISHED = 17u;  // Vulkan's flag of REPORT_UNFINISHED
 CONST uint SCENE_BINDINGS = 19u;
 

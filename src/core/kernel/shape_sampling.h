@@ -1,8 +1,8 @@
-// Points on shapes as seen from a reference point, with their density in solid angle (1/sr) at that point.
+// Sampling of points on shapes from a reference point, with densities in solid angle (1/sr) at that point.
 //
-// A shape is sampled uniformly in the solid angle that it subtends where that is known in closed form (whole spheres from
-// outside, large triangles), and uniformly in its area otherwise. Everything is exact under any affine transform: densities
-// carry the transform's Jacobian.
+// A shape is sampled uniformly in the solid angle that it subtends if there is a closed form (whole spheres from
+// outside, large triangles), else uniformly by area. Everything is exact under any affine transform: densities include
+// the transform's Jacobian.
 #ifndef LAMPYRIS_KERNEL_SHAPE_SAMPLING
 #define LAMPYRIS_KERNEL_SHAPE_SAMPLING
 
@@ -11,17 +11,18 @@ struct ShapeSample {
     float distance;
     float pdf;  // 1/sr
     vec3 position;
-    float offset;  // along the normal, to where a ray is clear of the rounding error of the surface
+    float offset;  // along the normal, to leave the rounding error of the surface
     vec3 ng;       // unit geometric normal, oriented as Surface's
     vec2 uv;
 };
 
-// Density in solid angle, at a distance whose square is given, of a density in area.
+// Converts a density per area to solid angle, at a distance with the given square.
 FN float pdf_of_area(float pdf_area, float distance_squared, float cosine) {
     return pdf_area * distance_squared / max(abs(cosine), 1e-20f);
 }
 
-// wi and distance from a position and a density in area; false where the reference point is on the shape or sees its edge.
+// Computes wi, distance and pdf from the position and a density per area; false if the reference point is on the shape
+// or sees it edge-on.
 FN bool shape_sample_from_area(vec3 ref_p, float pdf_area, INOUT(ShapeSample) s) {
     vec3 to_light = s.position - ref_p;
     float d2 = length_squared(to_light);
@@ -34,17 +35,17 @@ FN bool shape_sample_from_area(vec3 ref_p, float pdf_area, INOUT(ShapeSample) s)
     return s.pdf > 0.0f && is_finite(s.pdf);
 }
 
-// Where a shadow ray ends that comes along wi from `distance` away to the light's surface at p: `offset` outside of it, as a ray that
-// starts there would be, and out of what the ray's own arithmetic rounds (its direction, its length and the tracer's distances), which
-// is relative to its length.
+// The end of a shadow ray that reaches the light's surface at p along wi, over `distance`. It is outside of the surface
+// by `offset`, as the origin of a ray from there would be, and by the rounding errors of the shadow ray itself (its
+// direction, its length and the tracer's distances), which are proportional to its length.
 CONST float SHADOW_ROUNDING = 16.0f * MACHINE_EPSILON;
 FN vec3 shadow_end(vec3 p, float offset, vec3 ng, vec3 wi, float distance) {
     return origin_beyond(p, (offset + SHADOW_ROUNDING * distance) * ng, -wi);
 }
-// A light at a point, in a corner of the scene for instance, has no surface: it faces every ray.
+// A light at a point, for instance in a corner of the scene, has no surface: use the ray's direction as its normal.
 FN float point_offset(vec3 p, vec3 direction) { return way_out_length(p, MACHINE_EPSILON * abs(p), direction); }
 
-// A point on a light, chosen by area: where photons start.
+// A point on a light, sampled by area: where photons start.
 struct AreaSample {
     vec3 position;
     vec3 error;  // bound of the absolute rounding error of `position`, per coordinate
@@ -55,8 +56,9 @@ struct AreaSample {
 
 // ---- Triangles -------------------------------------------------------------------------------------------------------
 
-// Below this solid angle (sr) a triangle is sampled by area: distance and cosine vary little over it. At 0.2 sr (the lamp of
-// bench/support/terrain.py) sampling by solid angle lowers the image's relMSE by 8.5 % and costs 9.6 % more time.
+// Below this solid angle (sr) a triangle is sampled by area, because distance and cosine vary little over it. At 0.2 sr
+// (the lamp of bench/support/terrain.py) sampling by solid angle lowers the image's relMSE by 8.5 % and costs 9.6 %
+// more time.
 CONST float SPHERICAL_TRIANGLE_MIN = 0.25f;
 CONST float SPHERICAL_TRIANGLE_MAX = 6.22f;  // at 2 pi the reference point is in the triangle's plane
 
@@ -65,9 +67,10 @@ FN float spherical_triangle_area(vec3 a, vec3 b, vec3 c) {
     return 2.0f * atan2_of(abs(dot3(a, cross3(b, c))), 1.0f + dot3(a, b) + dot3(b, c) + dot3(a, c));
 }
 
-// Solid angle in which to sample the triangle from p, or 0 where it is to be sampled by area.
+// The triangle's solid angle as seen from ref_p, and the unit directions to its corners; 0 if it is to be sampled by
+// area.
 FN float triangle_sampled_solid_angle(IN(LightRecord) light, vec3 ref_p, OUT(vec3) a, OUT(vec3) b, OUT(vec3) c) {
-    // From afar it is nearly the area, foreshortened, over the squared distance: area height / d^3.
+    // From far away, it is about the foreshortened area over the squared distance: area height / d^3.
     vec3 centre = (light.p0 + light.p1 + light.p2) * (1.0f / 3.0f) - ref_p;
     float d2 = length_squared(centre);
     if (d2 > 4.0f * light.extent * light.extent) {
@@ -89,12 +92,13 @@ FN float triangle_sampled_solid_angle(IN(LightRecord) light, vec3 ref_p, OUT(vec
     return solid_angle >= SPHERICAL_TRIANGLE_MIN && solid_angle <= SPHERICAL_TRIANGLE_MAX ? solid_angle : 0.0f;
 }
 
-// Direction uniform in the spherical triangle (Arvo 1995, "Stratified Sampling of Spherical Triangles"): u.x chooses the
-// share of the area cut off by an arc from b to a point c' on the arc ac, u.y a point on the arc b c'.
+// Samples a direction uniformly in the spherical triangle (Arvo 1995, "Stratified Sampling of Spherical Triangles"):
+// u.x chooses the fraction of the area that an arc from b to a point c' on the arc ac cuts off, u.y a point on the arc
+// b c'.
 //
-// c' is found by half angles: with c' at angle theta from a, t the unit tangent there and V = |a . (b x t)|, van Oosterom's
-// formula for the triangle a, b, c' of area A reads tan(A/2) = h V / ((1 + a.b) + h b.t), h = tan(theta/2), which is linear
-// in h. Unlike Arvo's expressions it does not cancel for small triangles.
+// c' is computed with half angles: with c' at angle theta from a, t the unit tangent there and V = |a . (b x t)|, van
+// Oosterom's formula for the triangle a, b, c' of area A reads tan(A/2) = h V / ((1 + a.b) + h b.t), h = tan(theta/2),
+// which is linear in h. Unlike Arvo's expressions it does not cancel for small triangles.
 FN vec3 sample_spherical_triangle(vec3 a, vec3 b, vec3 c, float solid_angle, vec2 u) {
     float s;
     float k;
@@ -115,7 +119,7 @@ FN vec3 sample_spherical_triangle(vec3 a, vec3 b, vec3 c, float solid_angle, vec
     return unit(b * (1.0f - one_minus_cos) + side * (safe_sqrt(one_minus_cos * (2.0f - one_minus_cos)) / side_length));
 }
 
-// The corners of a triangle: which vertices they are.
+// The vertex indices of a triangle's corners.
 FN uvec3 triangle_corners(uint geometry, uint primitive) {
     uint first = geometries[geometry].first_index + 3u * primitive;
     return uvec3(indices[first], indices[first + 1u], indices[first + 2u]);
@@ -128,7 +132,7 @@ RARE_FN vec3 interpolated_light_normal(uint geometry, uint primitive, vec3 baryc
            barycentric.z * vertex_normal(normals_of + corner.z);
 }
 
-// Unit normal of a triangle light, turned as the geometry's flags and vertex normals say.
+// Unit normal of a triangle light, on the side that the geometry's flags or vertex normals determine.
 FN vec3 triangle_light_normal(IN(LightRecord) light, vec3 barycentric) {
     vec3 ng = light.normal;
     if (HAS(EFFECT_SMOOTH_NORMALS) && RARELY(light.smooth_normals != 0.0f))
@@ -136,7 +140,7 @@ FN vec3 triangle_light_normal(IN(LightRecord) light, vec3 barycentric) {
     return ng;
 }
 
-// pbrt's uv of a triangle without any are (0,0), (1,0), (1,1).
+// Triangles without uvs have pbrt's: (0,0), (1,0), (1,1).
 FN vec2 triangle_light_uv(IN(LightRecord) light, vec3 barycentric) {
     if ((HAS(EFFECT_LIGHT_TEXTURES) || HAS(EFFECT_ALPHA)) &&
         (geometries[light.geometry].flags & GEOMETRY_HAS_UVS) != 0u) {
@@ -169,7 +173,7 @@ FN bool sample_triangle_light(IN(LightRecord) light, vec3 ref_p, vec2 u, OUT(Sha
     vec3 e1 = light.p1 - p0;
     vec3 e2 = light.p2 - p0;
     s.uv = vec2(0.0f);
-    s.offset = light.shadow_end;  // triangle_light (core/scene/area_lights.cpp)
+    s.offset = light.shadow_end;  // from triangle_light (core/scene/area_lights.cpp)
     vec3 a;
     vec3 b;
     vec3 c;
@@ -177,7 +181,7 @@ FN bool sample_triangle_light(IN(LightRecord) light, vec3 ref_p, vec2 u, OUT(Sha
     vec3 barycentric;
     if (solid_angle > 0.0f) {
         s.wi = sample_spherical_triangle(a, b, c, solid_angle, u);
-        // Where that direction meets the triangle's plane (Moeller and Trumbore 1997), kept inside of the triangle.
+        // Intersects the direction with the triangle's plane (Moeller and Trumbore 1997), clamped to the triangle.
         vec3 pv = cross3(s.wi, e2);
         float determinant = dot3(e1, pv);
         if (determinant == 0.0f) return false;
@@ -221,13 +225,13 @@ FN float quadric_area(uint kind, IN(Quadric) q) {
 
 FN bool sphere_is_whole(IN(Quadric) q) { return q.z_min <= -q.radius && q.z_max >= q.radius && q.phi_max >= TWO_PI; }
 
-// Density in area (set's space) of sampling the quadric uniformly in its own space, where its set normal (quadric_set_normal)
-// has the length given.
+// Density per area (set's space) of sampling the quadric uniformly in its own space, at a point where its normal in the
+// set's space (quadric_set_normal) has the given length.
 FN float quadric_pdf_area(IN(GeometryRecord) g, IN(TransformRecord) m, float normal_length) {
     return abs(determinant_of(m.from0, m.from1, m.from2)) / (quadric_area(g.kind, g.quadric) * normal_length);
 }
 
-// Uniform in area, in the quadric's own space.
+// Uniform by area, in the quadric's own space.
 FN vec3 sample_quadric_point(uint kind, IN(Quadric) q, vec2 u) {
     if (kind == GEOMETRY_DISK) {
         if (q.inner_radius == 0.0f && q.phi_max >= TWO_PI) {
@@ -242,7 +246,7 @@ FN vec3 sample_quadric_point(uint kind, IN(Quadric) q, vec2 u) {
     return spherical_direction(r, z, u.y * q.phi_max);
 }
 
-// 1 - cos of the half angle of the cone that a whole sphere fills, seen from `ref_p` (quadric's space); 0 from inside.
+// 1 - cos of the half angle of the cone that a whole sphere subtends from `ref_p` (quadric's space); 0 from inside.
 FN float sphere_cone(IN(Quadric) q, vec3 ref_p) {
     vec3 f = ref_p / q.radius;
     float d2 = length_squared(f);
@@ -251,15 +255,15 @@ FN float sphere_cone(IN(Quadric) q, vec3 ref_p) {
     return sin2 / (1.0f + sqrt(1.0f - sin2));
 }
 
-// Whether all light of a whole sphere that reaches a point outside comes from the side that faces it: not where rays pass that side
-// and the far one emits inwards.
+// Whether points outside of a whole sphere receive its light only from the side that faces them. This is false if rays
+// may pass that side (alpha) and the far side emits inwards.
 FN bool sphere_hides_its_inside(IN(GeometryRecord) g) {
     if (!HAS(EFFECT_ALPHA) || (g.alpha_texture == NONE && g.alpha >= 1.0f)) return true;
     return (g.flags & GEOMETRY_REVERSED) == 0u && (lights[g.first_light].flags & LIGHT_TWO_SIDED) == 0u;
 }
 
-// How much solid angle in the quadric's space a unit of solid angle is about a direction that the transform stretches so. Each
-// product stays near the scale's first power.
+// Solid angle in the quadric's space per solid angle in the set's space, around a direction whose length the transform
+// multiplies by `stretch`. The order of the products keeps them within a float's range.
 FN float sphere_cone_stretch(IN(TransformRecord) m, float stretch) {
     return abs(determinant_of(m.from0, m.from1, m.from2)) * stretch * stretch * stretch;
 }
@@ -287,7 +291,7 @@ FN bool sample_quadric_light(uint geometry, vec3 ref_p, vec2 u, OUT(ShapeSample)
         vec3 o = transform_point(m.from0, m.from1, m.from2, ref_p);
         float one_minus_cos_max = sphere_cone(g.quadric, o);
         if (one_minus_cos_max > 0.0f) {
-            // Uniform in the cone that the sphere fills; distances in units of the radius.
+            // Uniform in the cone that the sphere subtends; distances in units of the radius.
             vec3 f = o / g.quadric.radius;
             float d = length_of(f);
             Frame frame = frame_from_z(f / -d);
@@ -295,7 +299,8 @@ FN bool sample_quadric_light(uint geometry, vec3 ref_p, vec2 u, OUT(ShapeSample)
             float sin2 = local.x * local.x + local.y * local.y;
             float half_chord = safe_sqrt(1.0f - d * d * sin2);
             float t = d * local.z - half_chord;
-            // The point, from the sphere's centre: no difference of large numbers, however far the sphere is.
+            // The point relative to the sphere's centre: no difference of large numbers, however far away the sphere
+            // is.
             vec3 local_point = vec3(t * local.x, t * local.y, -(d * sin2 + half_chord * local.z));
             vec3 p = to_world(frame, local_point);
             p = p * (g.quadric.radius / length_of(p));
@@ -340,8 +345,8 @@ FN float pdf_quadric_light(uint geometry, vec3 ref_p, vec3 position, vec3 ng, ve
 
 // ---- Bilinear patches ------------------------------------------------------------------------------------------------
 
-// How much area a step in u and v covers, at the four corners, up to a common factor; over a plane patch it varies bilinearly
-// between them, so that sampling (u, v) in proportion is uniform in area there.
+// Area per step in u and v at the four corners, up to a common factor. On a plane patch it is bilinear in between, so
+// that sampling (u, v) in proportion to it is uniform by area.
 FN vec4 patch_stretch(IN(Patch) b) {
     vec4 areas = vec4(
         length_of_area(cross3(b.p10 - b.p00, b.p01 - b.p00)), length_of_area(cross3(b.p10 - b.p00, b.p11 - b.p10)),
@@ -349,7 +354,7 @@ FN vec4 patch_stretch(IN(Patch) b) {
     return areas * scale_to_one(max(max(areas.x, areas.y), max(areas.z, areas.w)));
 }
 
-// Density in area at (u, v).
+// Density per area at (u, v).
 FN float patch_pdf_area(IN(Patch) b, vec2 uv) {
     float stretch = length_of_area(cross3(patch_dpdu(b, uv.y), patch_dpdv(b, uv.x)));
     return stretch > 0.0f ? pdf_bilinear(uv, patch_stretch(b)) / stretch : 0.0f;
@@ -378,7 +383,7 @@ FN bool sample_bilinear_light(uint geometry, uint primitive, vec3 ref_p, vec2 u,
     return shape_sample_from_area(ref_p, place.pdf, s);
 }
 
-// The surface's uv may be vertex attributes, so the patch's own are found again with the ray.
+// The surface's uv may be vertex attributes, so the patch's own uv are computed again by intersecting the ray.
 FN float pdf_bilinear_light(uint geometry, uint primitive, vec3 ref_p, vec3 position, vec3 ng, vec3 wi) {
     float d2 = length_squared(position - ref_p);
     float t;

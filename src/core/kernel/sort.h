@@ -1,15 +1,16 @@
-// Sorts a range of (key, value) pairs in place, by one invocation: insertion where it is short, n log n where it is not. The pairs are
-// the kernel's own: BUFFER_RW(..., uvec2, order), declared before this.
+// Sorts a range of (key, value) pairs in place, in one invocation: insertion sort for short ranges, else heap sort. The
+// pairs are the kernel's buffer BUFFER_RW(..., uvec2, order), declared before this file is included.
 #ifndef LAMPYRIS_KERNEL_SORT
 #define LAMPYRIS_KERNEL_SORT
 
 #include "core/kernel/prelude.h"
 
-// Heap sort (Williams 1964): no memory, no recursion. `root` sinks into the heap of the first `count` pairs from `begin`.
+// Heap sort (Williams 1964) needs no memory and no recursion. Sifts `root` down in the heap of `count` pairs from
+// `begin` on.
 FN void sort_sink(uint begin, uint root, uint count) {
     uvec2 pair = order[begin + root];
     uint hole = root;
-    // One level of the heap a step: the bound is never met, unless the driver ends the loop early.
+    // One level per step, so the bound is never reached.
     uint step = 0u;
     for (; step < 32u && 2u * hole + 1u < count; ++step) {
         uint child = 2u * hole + 1u;

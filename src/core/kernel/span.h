@@ -1,5 +1,6 @@
-// Kernels that have to compute where they will touch memory handle SPAN batches an invocation: each is computed, and asked for, before
-// the one ahead of it is used, so that a CPU does not wait between. The host runs span_count(n) invocations (core/photons/photon_map.h).
+// Kernels that have to compute the addresses of their random accesses handle SPAN batches per invocation: each batch's
+// addresses are computed and prefetched before the previous batch is used, so that a CPU does not wait in between. The
+// host runs span_count(n) invocations (core/photons/photon_map.h).
 #ifndef LAMPYRIS_KERNEL_SPAN
 #define LAMPYRIS_KERNEL_SPAN
 
@@ -7,7 +8,7 @@
 
 CONST uint SPAN = 4u;
 
-// The k-th item of an invocation's `turn`-th batch; and where its place is kept: there is room for two batches.
+// The k-th item of an invocation's `turn`-th batch, and the slot in which its address is kept; two batches have slots.
 FN uint span_item(uint index, uint turn, uint k) { return batch_item(index * SPAN + turn, k); }
 FN uint span_room(uint turn, uint k) { return (turn & 1u) * BATCH + k; }
 

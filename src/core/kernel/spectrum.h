@@ -1,4 +1,4 @@
-// Functions of a Spectrum (core/device/spectrum.h). No other kernel file knows how many values it has, and what they mean.
+// Functions of a Spectrum (core/device/spectrum.h). No other kernel file depends on the number or meaning of its values.
 #ifndef LAMPYRIS_KERNEL_SPECTRUM
 #define LAMPYRIS_KERNEL_SPECTRUM
 
@@ -15,11 +15,11 @@ FN bool is_black(Spectrum s) { return s[0] == 0.0f && s[1] == 0.0f && s[2] == 0.
 FN float max_value(Spectrum s) { return max(s[0], max(s[1], s[2])); }
 FN bool is_black(Spectrum s) { return s[0] == 0.0f && s[1] == 0.0f && s[2] == 0.0f; }
 
-// What the film adds up, in the units of the spectrum.
+// The film adds up linear Rec. 709.
 FN vec3 rgb_of(Spectrum s) { return vec3(s[0], s[1], s[2]); }
 FN Spectrum spectrum_of_rgb(vec3 rgb) { return Spectrum(rgb.x, rgb.y, rgb.z); }
 
-// A spectrum in a record, whose fourth number means something else.
+// A spectrum in a vec4 of a record, whose fourth number has another meaning.
 FN Spectrum spectrum_of(vec4 slot) { return Spectrum(slot.x, slot.y, slot.z); }
 FN vec4 slot_of(Spectrum s, float fourth) { return vec4(s[0], s[1], s[2], fourth); }
 #endif

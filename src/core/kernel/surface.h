@@ -1,4 +1,4 @@
-// What kernels say to each other about rays and surface points.
+// Rays, hits and surface points, as kernel functions exchange them.
 #ifndef LAMPYRIS_KERNEL_SURFACE
 #define LAMPYRIS_KERNEL_SURFACE
 
@@ -16,7 +16,7 @@ FN Ray ray_of(vec3 origin, vec3 direction) {
     return ray;
 }
 
-// The tracer's answer, reduced to the primitive.
+// A tracer's result, reduced to the primitive.
 struct Hit {
     uint instance;
     uint geometry;
@@ -27,15 +27,15 @@ struct Hit {
 struct Surface {
     vec3 position;
     vec3 error;  // bound of the absolute rounding error of `position`, per coordinate: rays start outside of it
-    vec3 way;    // out of the error, along ng (way_out, math.h); of surfaces that rays found
-    vec3 ng;     // unit geometric normal, on the side that pbrt calls outside (see reference: orientation rules)
+    vec3 way;    // offset along ng that leads out of the error (way_out, math.h); set if a ray hit the surface
+    vec3 ng;     // unit geometric normal, on the side that is outside in pbrt
     vec3 ns;     // unit shading normal
-    vec3 dpdu;   // of the surface; the shading tangent is its part orthogonal to ns
+    vec3 dpdu;   // derivatives of the position; the shading tangent is dpdu's part orthogonal to ns
     vec3 dpdv;
-    vec3 dndu;  // change of the shading normal: bump mapping needs it
+    vec3 dndu;  // derivatives of the shading normal, for bump mapping
     vec3 dndv;
     vec2 uv;
-    float distance;  // along the ray that found it
+    float distance;  // along the ray that hit it
     uint instance;
     uint geometry;
     uint primitive;
@@ -43,7 +43,7 @@ struct Surface {
     uint light;  // the area light that this primitive is, or NONE
 };
 
-// No surface, but no indeterminate member either.
+// No surface, with all members initialised.
 FN Surface no_surface() {
     Surface s;
     s.position = vec3(0.0f);

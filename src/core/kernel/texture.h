@@ -1,7 +1,7 @@
 // Textures: images looked up in packed texels, and programs of operations over a stack of colours (layout.h).
 //
-// There are no ray differentials: what pbrt filters over a pixel's footprint is sampled at the point here, and the pixel's
-// samples average it. Differences are finite, so a bump map shifts by a fixed step (material.h).
+// There are no ray differentials. Where pbrt filters over a pixel's footprint, textures are evaluated at the point
+// here, and the pixel's samples average them. Bump maps use finite differences with a fixed step (material.h).
 #ifndef LAMPYRIS_KERNEL_TEXTURE
 #define LAMPYRIS_KERNEL_TEXTURE
 
@@ -14,8 +14,9 @@ struct TextureContext {
 
 // ---- Images ----------------------------------------------------------------------------------------------------------
 
-// Half float to float by integer arithmetic: the result of a shift may be a denormal, which devices flush to zero.
-// Infinities do not occur: the host cuts them when it packs texels.
+// Converts a half float to a float by integer arithmetic. Half denormals are multiplied, because shifting them would
+// give float denormals, which devices flush to zero. Infinities do not occur: the host clamps them when it packs
+// texels.
 FN float half_to_float(uint h) {
     uint magnitude = h & 0x7fffu;
     float value = magnitude < 0x0400u ? float(magnitude) * 5.9604644775390625e-8f
@@ -51,13 +52,13 @@ FN vec3 image_texel(IN(ImageRecord) record, int x, int y) {
     return vec3(uintBitsToFloat(texels[first + index]));
 }
 
-// x cut to [-1, size], a NaN to -1, so that it converts to an integer on every backend.
+// x clamped to [-1, size], and -1 for NaN, so that it can be converted to an integer on every backend.
 FN float image_cut(float x, float size) {
     float low = x >= -1.0f ? x : -1.0f;
     return low <= size ? low : size;
 }
 
-// One texel, at most two outside of the image, where the wrap mode says what is there.
+// One texel. x and y may be up to two texels outside of the image, where the wrap mode applies.
 FN vec3 image_wrapped_texel(IN(ImageRecord) record, int x, int y) {
     int width = int(record.width);
     int height = int(record.height);
@@ -70,7 +71,7 @@ FN vec3 image_wrapped_texel(IN(ImageRecord) record, int x, int y) {
             px = x < 0 ? x + width : (x >= width ? x - width : x);
             py = y < 0 ? y + height : (y >= height ? y - height : y);
         } else if (wrap == WRAP_OCTAHEDRAL) {
-            // The square's edge is folded at its middle: beyond it lies the same edge, run through backwards.
+            // The square's edge is folded at its middle: beyond it, the same edge continues in the opposite direction.
             if (x < 0 || x >= width) {
                 px = x < 0 ? -1 - x : 2 * width - 1 - x;
                 py = height - 1 - py;
@@ -86,8 +87,8 @@ FN vec3 image_wrapped_texel(IN(ImageRecord) record, int x, int y) {
     return image_texel(record, px, py);
 }
 
-// An image at st in linear Rec. 709; (0, 0) is the upper left corner of the upper left texel, (1, 1) the lower right corner.
-// w is 1. Texel centres lie at half-integers; filter and wrap mode are the image's.
+// The image's value at st, in linear Rec. 709, with w = 1. (0, 0) is the upper left corner of the image,
+// (1, 1) its lower right corner. Texel centres are at half-integers; filter and wrap mode are the image's.
 FN vec4 image_lookup(uint image, vec2 st) {
     ImageRecord record = images[image];
     float width = float(record.width);
@@ -104,7 +105,7 @@ FN vec4 image_lookup(uint image, vec2 st) {
     float fy = interpolated ? y - y_floor : 0.0f;
     int ix = int(x_floor);
     int iy = int(y_floor);
-    // One loop for all, and of a number that a GLSL compiler does not know: it would copy the body for each turn.
+    // One loop with a trip count that a GLSL compiler does not know: it would copy the body for each iteration.
     int taps = interpolated ? 4 : 1;
     vec3 value = vec3(0.0f);
     for (int tap = 0; tap < taps; ++tap) {
@@ -118,7 +119,7 @@ FN vec4 image_lookup(uint image, vec2 st) {
 
 // ---- Mappings (pbrt, 4th edition, section 10.2) ----------------------------------------------------------------------
 
-// Where an operation's texture is evaluated: (s, t, 0), or for MAPPING_SPACE the point in the texture's space.
+// The coordinates of an operation: (s, t, 0), or, for MAPPING_SPACE, the point in the texture's space.
 FN vec3 texture_mapped(uint op, uint mapping, IN(TextureContext) c) {
     vec4 m0 = texture_ops[op].m0;
     if (mapping == MAPPING_UV) return vec3(m0.x * c.uv.x + m0.z, m0.y * c.uv.y + m0.w, 0.0f);
@@ -134,7 +135,7 @@ FN vec3 texture_mapped(uint op, uint mapping, IN(TextureContext) c) {
 
 // ---- Gradient noise (Perlin 2002, "Improving Noise") -------------------------------------------------------------------
 
-// `table`: where Perlin's permutation of 0..255 begins in `texels`.
+// `table`: offset of Perlin's permutation of 0..255 in `texels`.
 FN uint noise_permute(uint table, uint i) { return texels[table + (i & 0xffu)]; }
 
 // The corner's gradient, one of twelve edge directions, dotted with the offset from the corner.
@@ -147,7 +148,7 @@ FN float noise_corner(uint table, int x, int y, int z, vec3 d) {
 
 FN float noise_weight(float t) { return t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f); }
 
-// In about [-1, 1]; 0 at every point of the integer lattice, and where coordinates are too large to have a fraction.
+// Noise in about [-1, 1]; 0 at every point of the integer lattice, and if coordinates are too large to have a fraction.
 FN float noise_at(uint table, vec3 p) {
     if (!(abs(p.x) < 1.0e9f && abs(p.y) < 1.0e9f && abs(p.z) < 1.0e9f)) return 0.0f;
     vec3 low = vec3(floor(p.x), floor(p.y), floor(p.z));
@@ -167,7 +168,7 @@ FN float noise_at(uint table, vec3 p) {
     return sum;
 }
 
-// A cubic Bezier segment of marble's colours at t in [0, 1]; the spline's control points are pbrt's.
+// Marble's colours are a spline of cubic Bezier segments with pbrt's control points; `at` is in [0, 1].
 CONST uint MARBLE_SEGMENTS = 6u;
 FN vec3 marble_color(uint i) {
     if (i == 3u) return vec3(0.5f, 0.5f, 0.5f);
@@ -185,11 +186,13 @@ FN vec3 marble_spline(float at) {
     return 1.5f * value;
 }
 
-// What an operation makes of noise, at a point in its texture's space, or (s, t, 0).
-// TEXTURE_FBM and TEXTURE_WRINKLED: octaves, each 1.99 times as fine and `roughness` times as strong; wrinkled: of the absolute
-// value, plus the mean (0.2) of the first octave left out (pbrt, 4th edition, section 10.6.4 online, without a footprint).
-// TEXTURE_WINDY: waves times the strength of slow gusts. TEXTURE_DOTS: 1 in a dot: cells with positive noise have one, of radius
-// 0.35, shifted at random inside the cell. All are sums over one loop: a GLSL compiler copies noise_at for each call.
+// The value of a noise operation at a point in its texture's space, or at (s, t, 0).
+// TEXTURE_FBM and TEXTURE_WRINKLED: octaves, each with 1.99 times the frequency and `roughness` times the amplitude of
+// the one before. Wrinkled sums absolute values, and adds the mean (0.2) of the first octave that is left out (pbrt,
+// 4th edition, section 10.6.4 online, without a footprint).
+// TEXTURE_WINDY: waves times the strength of slow gusts.
+// TEXTURE_DOTS: 1 in a dot, else 0. Cells with positive noise have a dot of radius 0.35 at a random offset.
+// All are sums in one loop, because a GLSL compiler copies noise_at for each call.
 FN vec3 texture_noise(uint op, vec3 mapped) {
     vec4 a = texture_ops[op].a;
     uint kind = texture_ops[op].operation;
@@ -200,7 +203,7 @@ FN vec3 texture_noise(uint op, vec3 mapped) {
     vec3 cell = vec3(floor(p.x + 0.5f), floor(p.y + 0.5f), 0.5f);
     uint gusts = windy ? 3u : 0u;
     uint count = dots ? 3u : texture_ops[op].option + gusts;
-    vec3 found = vec3(0.0f);  // of dots: noise at three places
+    vec3 found = vec3(0.0f);  // dots: noise at three points
     float gust = 0.0f;
     float sum = 0.0f;
     float frequency = windy ? 0.1f : 1.0f;
@@ -249,13 +252,13 @@ FN vec3 texture_image(uint op, vec2 st) {
     return value;
 }
 
-// The value of a texture. Every operand is evaluated, also those that a checkerboard does not show: a loop over operations
-// branches alike for all points of a program.
+// The value of a texture. All operands are evaluated, even those that a checkerboard does not show, so that the loop
+// over operations branches equally for all points of a program.
 RARE_FN vec3 texture_color(uint program, IN(TextureContext) c) {
-    // The top of the stack is a variable: a program of one operation, the common case, touches no array.
+    // The top of the stack is a variable, so that a program of one operation, the common case, uses no array.
     vec3 stack[TEXTURE_STACK];
     vec3 top = vec3(0.0f);
-    uint depth = 0u;  // of `stack`, without the top
+    uint depth = 0u;  // size of `stack`, which excludes the top
     for (uint i = 0u; i < TEXTURE_LENGTH; ++i) {
         uint op = program + i;
         uint kind = texture_ops[op].operation;
@@ -284,7 +287,7 @@ RARE_FN vec3 texture_color(uint program, IN(TextureContext) c) {
                 depth = depth - 1u;
                 top = lerp3_of(top.x, stack[depth], first);
             } else if (kind == TEXTURE_CHECKERBOARD) {
-                // (s, t, 0) adds nothing for the third coordinate.
+                // The third coordinate of (s, t, 0) adds nothing.
                 float sum = floor(mapped.x) + floor(mapped.y) + floor(mapped.z);
                 top = sum - 2.0f * floor(0.5f * sum) == 1.0f ? top : first;
             } else if (kind == TEXTURE_DIRECTION_MIX) {

@@ -1,4 +1,4 @@
-// Tracing rays: which tracer answers is decided when a kernel is built.
+// Ray tracing: the tracer is chosen when a kernel is built.
 #ifndef LAMPYRIS_KERNEL_TRACE
 #define LAMPYRIS_KERNEL_TRACE
 

@@ -1,22 +1,23 @@
-// The tracer of Vulkan and of backend cpu-bvh2: walks the BVH2 that accel/rays/bvh2.h built.
+// The tracer of Vulkan without ray queries and of backend cpu-bvh2: traverses the BVH2 of core/bvh.
 #ifndef LAMPYRIS_KERNEL_TRACE_BVH2
 #define LAMPYRIS_KERNEL_TRACE_BVH2
 
-CONST uint BVH_STACK = HAS(EFFECT_INSTANCES) ? 68u : BVH_DEPTH;  // two trees, a mixed leaf, and the mark between them
-// Marks on the stack. They have the leaf's bit, so that the inner loop stops at them as at leaves.
-CONST uint BVH_LEAVE_INSTANCE = 0xffffffffu;  // below it lies the world
-CONST uint BVH_END = 0xfffffffeu;             // below it lies nothing
+CONST uint BVH_STACK = HAS(EFFECT_INSTANCES) ? 68u : BVH_DEPTH;  // two trees, a mixed leaf, and the marker between them
+// Markers on the stack. They have the leaf's bit, so that the inner loop stops at them as at leaves.
+CONST uint BVH_LEAVE_INSTANCE = 0xffffffffu;  // nodes of the world are below it
+CONST uint BVH_END = 0xfffffffeu;             // the bottom of the stack
 
 // 1/x, but finite for 0, so that a box plane through the origin gives 0 and not NaN.
 FN float bvh_inverse(float x) { return abs(x) > 1e-20f ? 1.0f / x : copy_sign(1e20f, x); }
 
-// Comparisons with NaN are false, and the walk would look at everything.
+// Comparisons with NaN are false, and the traversal would visit every node.
 FN bool bvh_is_finite(vec3 o, vec3 d) { return is_finite(o.x + o.y + o.z + d.x + d.y + d.z); }
 
-// Where a ray enters a box, or INFINITE_DISTANCE where it does not within [0, t_max]. Widened by the rounding of the slab
-// distances (Ize 2013, "Robust BVH Ray Traversal"). Planes are told apart by the direction's sign. Their distances are compared as
-// integers: the bits of floats that are not negative are in their order, and a negative one loses against 0 here, or makes the box a
-// miss below. GLSL's min and max of floats have to care for NaN, at three instructions each on a CPU.
+// The distance at which a ray enters a box, or INFINITE_DISTANCE if it does not within [0, t_max]. Boxes are widened by
+// the rounding of the slab distances (Ize 2013, "Robust BVH Ray Traversal"). The direction's signs tell near planes
+// from far ones. Distances are compared as integers: bits of floats that are not negative have the floats' order. A
+// negative near distance loses against 0, and a negative far distance makes the box a miss. GLSL's min and max of
+// floats must handle NaN, which takes three instructions each on a CPU.
 FN float bvh_enter(IN(VecPair) box, vec3 o, vec3 inverse, float t_max) {
     bool back_x = inverse.x < 0.0f;
     bool back_y = inverse.y < 0.0f;
@@ -34,8 +35,8 @@ FN float bvh_enter(IN(VecPair) box, vec3 o, vec3 inverse, float t_max) {
     return near <= intBitsToFloat(far_bits) * 1.0000004f ? near : INFINITE_DISTANCE;
 }
 
-// Moeller and Trumbore 1997 by way of the unnormalised normal, from which shared code recomputes the distance. True where
-// 0 < t < t_max.
+// Moeller and Trumbore 1997, written with the unnormalised normal, from which shared code recomputes the distance. True
+// if 0 < t < t_max.
 FN bool bvh_triangle(vec3 v0, vec3 v1, vec3 v2, vec3 o, vec3 d, float t_max, OUT(float) t) {
     vec3 e1 = v1 - v0;
     vec3 e2 = v2 - v0;
@@ -52,12 +53,12 @@ FN bool bvh_triangle(vec3 v0, vec3 v1, vec3 v2, vec3 o, vec3 d, float t_max, OUT
     return t > 0.0f && t < t_max;
 }
 
-// The closest hit (or, with `any_hit`, some hit) with 0 < t < t_max. A ray that is not finite meets nothing.
+// The closest hit (or, with `any_hit`, some hit) with 0 < t < t_max. A ray that is not finite hits nothing.
 //
-// Two loops, one in the other, so that the lanes of a GPU (or of a CPU's vector) that have found a leaf wait for the others, and
-// then look at their leaves together (Aila and Laine 2009, "Understanding the Efficiency of Ray Traversal on GPUs").
+// Two nested loops: lanes of a GPU (or of a CPU's vectors) that have reached a leaf wait for the others, and then all
+// test their leaves together (Aila and Laine 2009, "Understanding the Efficiency of Ray Traversal on GPUs").
 FN bool bvh_walk(vec3 origin, vec3 direction, float t_max, bool any_hit, OUT(Hit) hit) {
-    uint stack[BVH_STACK + 2u];  // BVH_END lies below, and a place is written before it counts
+    uint stack[BVH_STACK + 2u];  // BVH_END at the bottom, and one entry that is written before it is counted
     stack[0] = BVH_END;
     uint depth = 1u;
     vec3 o = origin;
@@ -79,7 +80,7 @@ FN bool bvh_walk(vec3 origin, vec3 direction, float t_max, bool any_hit, OUT(Hit
             uint right_child = floatBitsToUint(left.second.w);
             bool left_first = enter_left <= enter_right;
             node = left_first ? left_child : right_child;
-            // Stored whether the ray meets it or not: lanes that skip a store cost a CPU more than the store.
+            // Stored even if the ray misses it: on a CPU, lanes that skip a store cost more than the store.
             stack[depth] = left_first ? right_child : left_child;
             if ((left_first ? enter_right : enter_left) < INFINITE_DISTANCE) depth += 1u;
             if ((left_first ? enter_left : enter_right) >= INFINITE_DISTANCE) {

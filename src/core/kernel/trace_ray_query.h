@@ -1,4 +1,5 @@
-// Rays traced by the device itself: VK_KHR_ray_query. GLSL only; backends/vulkan/ray_query.cpp builds what is traced here.
+// Ray tracing by the device: VK_KHR_ray_query. GLSL only; backends/vulkan/ray_query.cpp builds the acceleration
+// structures.
 #ifndef LAMPYRIS_KERNEL_TRACE_RAY_QUERY
 #define LAMPYRIS_KERNEL_TRACE_RAY_QUERY
 
@@ -14,7 +15,7 @@ bool ray_query_walk(vec3 origin, vec3 direction, float t_max, bool any_hit, OUT(
         if (!rayQueryProceedEXT(query)) {
             finished = true;
         } else if (HAS(EFFECT_QUADRICS) || HAS(EFFECT_BILINEAR)) {
-            // Triangles are opaque: what comes here is the box of a quadric or a patch.
+            // Triangles are opaque, so this is the box of a quadric or a patch.
             vec3 o = rayQueryGetIntersectionObjectRayOriginEXT(query, false);
             vec3 d = rayQueryGetIntersectionObjectRayDirectionEXT(query, false);
             uint geometry = uint(rayQueryGetIntersectionInstanceCustomIndexEXT(query, false));

@@ -1,33 +1,33 @@
-// Walking through the scene from surface to surface: what camera paths, eye paths and photons have in common.
+// Following a path from surface to surface: the common part of camera paths, eye paths and photons.
 //
 //     Walk walk = walk_begin(ray, medium, TRANSPORT_RADIANCE, maxdepth);
 //     Surface s;
 //     while (walk_next(walk, s)) {                // the next surface that stops the ray
-//         ...                                     // what it emits
+//         ...                                     // its emission
 //         if (walk_crosses(walk, s)) continue;    // it only bounds a medium
 //         Vertex v = walk_vertex(walk, s);
 //         if (walk.depth >= maxdepth) break;
-//         ...                                     // what arrives here from lights, or from photons
+//         ...                                     // direct light, or light from photons
 //         BsdfSample next;
 //         if (!bsdf_sample(v.bsdf, v.wo, u_lobe, u, walk.transport, next)) break;
 //         if (!walk_leave(walk, s, v, next, rrdepth, numbers, dimension)) break;
 //     }
 //     if (walk.escaped) ...                       // the environment
 //
-// The walk attenuates its throughput in media, starts rays outside of rounding errors, bounds the number of surfaces that it
-// meets, and reports a loop that the driver ended early.
+// The walk attenuates its throughput in media, offsets the origins of rays by rounding errors, bounds the number of
+// surfaces that it visits, and reports a loop that the driver ended early.
 #ifndef LAMPYRIS_KERNEL_WALK
 #define LAMPYRIS_KERNEL_WALK
 
 struct Walk {
-    Ray ray;              // leaves the last vertex, or the last surface that let it pass
-    Spectrum throughput;  // radiance: the weight of what arrives along the ray; importance: the power that it carries
-    float eta_scale;      // undoes the scaling of radiance on refraction: roulette must not see it
+    Ray ray;              // starts at the last vertex, or at the last surface that let it pass
+    Spectrum throughput;  // radiance: weight of the radiance along the ray; importance: power that the ray carries
+    float eta_scale;      // undoes the scaling of radiance by refraction, for Russian roulette
     uint transport;       // TRANSPORT_*: radiance flows against the ray, importance along it
-    uint medium;          // that the ray is in
+    uint medium;          // in which the ray is
     int depth;            // scattering vertices so far
-    int maxdepth;         // at most
-    uint passed;          // masks and interfaces so far
+    int maxdepth;         // maximum of depth
+    uint passed;          // masks and interfaces passed so far
     bool escaped;         // the ray left the scene
 };
 
@@ -35,13 +35,13 @@ struct Walk {
 struct Vertex {
     Bsdf bsdf;
     Frame frame;
-    vec3 wo;  // where the walk came from
+    vec3 wo;  // towards the previous vertex
 };
 
 // ---- Loops that a driver ends ----------------------------------------------------------------------------------------
-// A turn sets walk_turn to walk_turns, and back once it is known that another one follows: whoever leaves the loop leaves it
-// there. A loop that was ended by the driver does not. Both are 0 until the first turn: a walk need not take any. Not in Walk,
-// so that whoever writes a loop need not think of it.
+// A turn begins by setting walk_turn to walk_turns, and resets it to less once another turn is known to follow. So the
+// two are equal if the loop's own code left it, and differ if the driver ended it. Both are 0 until the first turn,
+// because a walk need not have one. They are not members of Walk, so that authors of loops can ignore them.
 
 PRIVATE(uint, walk_turn, 1)
 PRIVATE(uint, walk_turns, 1)
@@ -52,7 +52,7 @@ FN void walk_check() {
 
 FN void walk_opens() {
     if (!DRIVERS_END_LOOPS) return;
-    walk_check();  // of the walk before
+    walk_check();  // of the previous walk
     walk_turn[0] = 0u;
     walk_turns[0] = 0u;
 }
@@ -61,7 +61,7 @@ FN bool walk_takes_turn(IN(Walk) w) {
     if (HAS(EFFECT_INTERFACE | EFFECT_ALPHA) && w.passed > MAX_PASSED_SURFACES) return false;
     if (!DRIVERS_END_LOOPS) return true;
     bool first = walk_turns[0] == 0u;
-    if (first) walk_turns[0] = uint(w.maxdepth) + MAX_PASSED_SURFACES + 2u;  // more than it has
+    if (first) walk_turns[0] = uint(w.maxdepth) + MAX_PASSED_SURFACES + 2u;  // more than a walk has
     if (!first && !(walk_turn[0] < walk_turns[0])) return false;
     walk_turn[0] = walk_turns[0];
     return true;
@@ -88,8 +88,8 @@ FN Walk walk_begin(IN(Ray) ray, uint medium, uint transport, int maxdepth) {
     return w;
 }
 
-// The next surface that the ray meets, masked ones too, which may let it pass: `fate` is one of SURFACE_*. False where the
-// walk is over.
+// The next surface that the ray hits, even if it is masked and lets the ray pass; `fate` is one of SURFACE_*. False if
+// the walk is over.
 FN bool walk_next_or_mask(INOUT(Walk) w, OUT(Surface) s, OUT(uint) fate) {
     if (!walk_takes_turn(w)) return false;
     w.escaped = !intersect_next(w.ray.origin, w.ray.direction, s, fate);
@@ -98,7 +98,7 @@ FN bool walk_next_or_mask(INOUT(Walk) w, OUT(Surface) s, OUT(uint) fate) {
     return true;
 }
 
-// The next surface that stops the ray.
+// The next surface that stops the ray; false if the walk is over.
 FN bool walk_next(INOUT(Walk) w, OUT(Surface) s) {
     if (!walk_takes_turn(w)) return false;
     w.escaped = !intersect_scene_from(w.ray.origin, w.ray.direction, s);
@@ -106,7 +106,7 @@ FN bool walk_next(INOUT(Walk) w, OUT(Surface) s) {
     return !w.escaped;
 }
 
-// Leaves s straight on.
+// Continues straight on behind s.
 FN void walk_passes(INOUT(Walk) w, IN(Surface) s) {
     w.ray.origin = origin_beyond(s.position, s.way, w.ray.direction);
     w.passed += 1u;
@@ -116,7 +116,7 @@ FN void walk_passes(INOUT(Walk) w, IN(Surface) s) {
         REPORT_UNFINISHED();
 }
 
-// Whether s only bounds a medium; then the walk is beyond it.
+// Whether s only bounds a medium; if so, the walk continues behind it.
 FN bool walk_crosses(INOUT(Walk) w, IN(Surface) s) {
     if (!HAS(EFFECT_INTERFACE) || !is_interface(s)) return false;
     w.medium = medium_behind(s, w.ray.direction, w.medium);
@@ -130,8 +130,8 @@ FN bool walk_crosses_or_passes(INOUT(Walk) w, IN(Surface) s, uint fate) {
     return true;
 }
 
-// The vertex at s, which was reached in the given direction. The surface's shading normal becomes that of a bump or normal map,
-// its material that of a mix which was chosen.
+// The vertex at s, which was reached in the given direction. Afterwards, the surface's shading normal includes the bump
+// or normal map, and its material is the one that a mix chose.
 FN Vertex vertex_at(INOUT(Surface) s, vec3 direction) {
     Vertex v;
     v.bsdf = material_bsdf(s, -direction, v.frame);
@@ -141,18 +141,21 @@ FN Vertex vertex_at(INOUT(Surface) s, vec3 direction) {
 
 FN Vertex walk_vertex(IN(Walk) w, INOUT(Surface) s) { return vertex_at(s, w.ray.direction); }
 
-// What a sampled direction does to the throughput: the BSDF over its density, times what shading normals ask of the transport.
+// The factor of a sampled direction for the throughput: the BSDF times the cosine over the density, with the correction
+// for shading normals that the transport requires.
 FN Spectrum vertex_weight(IN(Walk) w, IN(Surface) s, IN(Vertex) v, IN(BsdfSample) next, vec3 onward) {
     if (w.transport == TRANSPORT_RADIANCE) return next.f * (abs(next.wi.z) / next.pdf);
-    // Shading normals are not symmetric (Veach 1997, equation 5.19): |wi.Ns wo.Ng| / (|wi.Ng| |wo.Ns|), of which |wo.Ns|
-    // cancels the cosine of the weight. wi is towards the light, wo onward.
+    // Shading normals make scattering non-symmetric (Veach 1997, equation 5.19). The correction is
+    // |wi.Ns wo.Ng| / (|wi.Ng| |wo.Ns|), whose |wo.Ns| cancels the cosine of the weight. wi points towards the light,
+    // wo onward.
     float towards = abs_dot(w.ray.direction, s.ng);
     return towards > 0.0f ? next.f * (abs(v.wo.z) * abs_dot(onward, s.ng) / (towards * next.pdf)) : Spectrum(0.0f);
 }
 
-// Goes on from s in a sampled direction, unless Russian roulette ends the walk, which it may after `rrdepth` vertices; it takes
-// the number of `dimension`. Radiance survives by its throughput. Importance survives by what is left of its power, so that
-// photons keep about the power that they had: few, bright ones would be noise. The last thing in a turn.
+// Continues from s in a sampled direction, unless Russian roulette ends the walk. Call it last in a turn. Roulette may
+// end the walk after `rrdepth` vertices, and uses the random number of `dimension`. The probability of survival is the
+// throughput for radiance. For importance it is the remaining fraction of the power, so that photons keep about the
+// same power: few bright photons would be noise.
 FN bool walk_leave(INOUT(Walk) w, IN(Surface) s, IN(Vertex) v, IN(BsdfSample) next, int rrdepth, IN(Sampler) numbers,
                    uint dimension) {
     vec3 onward = unit(to_world(v.frame, next.wi));

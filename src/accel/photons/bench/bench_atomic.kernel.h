@@ -1,4 +1,4 @@
-// The benchmark's floor: a counter at a random place, incremented.
+// A lower bound for the benchmark: one increment of a counter at a random index per point.
 #include "core/kernel/span.h"
 #include "core/kernel/layout.h"
 #include "core/kernel/random.h"

@@ -1,4 +1,4 @@
-// The benchmark's floor: a record of 16 bytes written to a random place.
+// A lower bound for the benchmark: writes one record of 16 bytes to a random index per point.
 #include "core/kernel/span.h"
 #include "core/kernel/layout.h"
 #include "core/kernel/random.h"
