@@ -1,4 +1,5 @@
-// Ambient occlusion: the cosine-weighted share of the hemisphere, on the viewer's side, that a point sees.
+// Ambient occlusion: the cosine-weighted fraction of the hemisphere, on the viewer's side, that is visible from a
+// point.
 #include "core/kernel/radiance.h"
 
 #include "integrators/ao/ao_params.h"

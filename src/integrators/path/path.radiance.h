@@ -6,8 +6,8 @@
 
 BUFFER_RO(1, PathParams, params)
 
-// Each vertex has a fixed number of dimensions, so that a dimension means the same in every sample, whatever the path met
-// before. For the direction and for the point on a light: no term of the radiance depends on both.
+// Each vertex has a fixed number of dimensions, so that a dimension means the same in every sample, whatever the path
+// hit before. Direction and light share one 2D point with two scramblings: no term of the radiance depends on both.
 CONST uint PATH_DIRECTION_AND_LIGHT = 0u;
 CONST uint PATH_LIGHT_CHOICE = 4u;
 CONST uint PATH_LOBE = 5u;
@@ -17,9 +17,9 @@ CONST uint PATH_VERTEX_DIMENSIONS = 8u;
 FN Spectrum radiance_along(IN(Ray) ray, INOUT(Sampler) numbers, INOUT(FirstHit) first) {
     Walk walk = walk_begin(ray, camera_medium(), TRANSPORT_RADIANCE, params[0].maxdepth);
     Spectrum radiance = Spectrum(0.0f);
-    vec3 previous = ray.origin;        // the vertex before, where lights were sampled
+    vec3 previous = ray.origin;        // the previous vertex, where lights were sampled
     float bsdf_density = 0.0f;         // pdf (solid angle) with which the ray's direction was sampled
-    bool lights_were_sampled = false;  // so that what the ray finds by chance shares its weight
+    bool lights_were_sampled = false;  // if so, emission that the ray hits is weighted against it
     Surface s;
     while (walk_next(walk, s)) {
         vec3 direction = walk.ray.direction;

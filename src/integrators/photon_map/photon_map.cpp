@@ -1,5 +1,5 @@
-// Photon mapping as Jensen (1996, 2001) has it: photons are traced once; passes of eye paths look them up, at their hit points or at
-// the ends of rays from there (final gathering).
+// Photon mapping after Jensen (1996, 2001): photons are traced once; each pass looks them up at the hit points of its
+// eye paths, or at the ends of rays from there (final gathering).
 #include "core/base/error.h"
 #include "core/render/integrator.h"
 #include "integrators/photon_map/photon_map_params.h"
@@ -21,14 +21,15 @@ constexpr const char* kNearest = "integrators/photon_map/photon_map_nearest.cons
 constexpr const char* kRays = "integrators/photon_map/photon_map_rays.kernel.h";
 constexpr const char* kAdd = "integrators/photon_map/photon_map_add.kernel.h";
 
-// Photons within a radius of 0, if they lay evenly on the scene's bounding sphere: so many, or so many times `nearest`.
+// With radius=0: the expected number of photons within the radius, and as a multiple of `nearest`, if photons lay
+// evenly on the scene's bounding sphere. The larger one applies.
 constexpr double kExpectedPhotons = 50.0, kExpectedOfNearest = 4.0;
 
-// What has surfaces that are followed, so that there may be caustics.
+// Effects of surfaces that paths follow, so that there may be caustics.
 constexpr uint64_t kSpecularEffects =
     kernel::EFFECT_CONDUCTOR | kernel::EFFECT_DIELECTRIC | kernel::EFFECT_THIN_DIELECTRIC | kernel::EFFECT_LAYERED_COAT;
 
-// Points where photons are looked up, one a pixel: hit points of eye paths, or ends of gather rays.
+// Points where photons are looked up, one per pixel: hit points of eye paths, or ends of gather rays.
 struct Lookups {
     Lookups(Device& device, uint32_t pixels)
         : hits(device.create_buffer(pixels * sizeof(kernel::HitPointRecord), "hit points")),
@@ -55,8 +56,9 @@ class PhotonMapRendering {
         counters_ = device_.create_buffer(sizeof(PhotonCounters), "counters");
         own_params_ = argument_buffer(device_, params_, "parameters");
         statistics_ = device_.create_buffer(pixels_ * sizeof(glm::vec2), "photon statistics");
-        statistics_->fill_zero();  // nothing here reads them
-        // What sppm's kernels estimate of a pass's bias is left alone: photons that stay have an error that passes do not show.
+        statistics_->fill_zero();  // sppm's kernels need the buffer, but its values are not used here
+        // The pass's bias that sppm's kernels estimate is ignored: the same photons in every pass have an error that
+        // passes do not show.
         biases_ = device_.create_buffer(pixels_ * sizeof(glm::vec4), "bias of gathered flux");
         film_bias_ = device_.create_buffer(pixels_ * sizeof(kernel::FilmBias), "bias of the film");
         film_bias_->fill_zero();
@@ -89,7 +91,7 @@ class PhotonMapRendering {
     uint32_t gather_rays() const { return uint32_t(params_.gather); }
 
     void check() const {
-        // Keys tell the photons of a path apart: one a bounce, and those at masks, which StoredPhotons counts.
+        // Keys distinguish the photons of a path: one per bounce, and those at masks, which StoredPhotons counts.
         const uint64_t bounces = uint64_t(params_.maxdepth) + 1;
         const uint64_t keys = std::max(uint32_t(params_.photons), caustic_paths()) * bounces;
         if (keys > std::numeric_limits<uint32_t>::max())
@@ -129,13 +131,13 @@ class PhotonMapRendering {
         map_->trace(map_params_);
         if (caustics_) caustics_->trace(map_params_);
         if (params_.radius > 0.0f) return;
-        // pi r^2 of 4 pi R^2 holds so many of all.
+        // pi r^2 of 4 pi R^2 contains this fraction of all photons.
         const double expected = std::max(kExpectedPhotons, kExpectedOfNearest * params_.nearest);
         const double share = std::min(1.0, expected / std::max(1.0, double(map_->count())));
         set_radii(float(2.0 * double(session_.scene.record.bounds.w) * std::sqrt(share)));
     }
 
-    // Of look-ups at the hit points, and in the map.
+    // Sets the parameters of sppm's kernels, for look-ups at the hit points and in the map.
     void set_radii(float radius) {
         kernel::PhotonPathParams shared{};
         shared.radius = map_radius_ = radius;
@@ -188,7 +190,7 @@ class PhotonMapRendering {
              {"film_bias", film_bias_}});
     }
 
-    // Of every pixel's hit point: as many look-ups at once as there are pixels, whatever `gather` is.
+    // One ray from every pixel's hit point: there are as many look-ups at once as pixels, for any `gather`.
     void one_gather_ray(uint64_t pass, uint32_t ray) {
         set_window(uint32_t(pass) * gather_rays() + ray);
         run(kRays, *rays_, "final_gather",
@@ -214,7 +216,7 @@ class PhotonMapRendering {
         window_->upload(&window, sizeof window);
     }
 
-    // Also clears what was gathered.
+    // Also clears the gathered flux.
     void give_radii(const Lookups& lookups, const BufferHandle& parameters, const char* phase) {
         run(photon_files::kRadius, *radius_, phase,
             {{"params", parameters},

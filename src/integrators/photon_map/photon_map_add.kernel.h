@@ -1,4 +1,4 @@
-// Adds what a gather ray found to its hit point.
+// Adds the radiance that a gather ray found to its hit point.
 #include "core/kernel/prelude.h"
 #include "core/kernel/layout.h"
 #include "core/kernel/math.h"

@@ -1,5 +1,5 @@
-// What a hit point makes of the photons nearest to it: as hit_flux.consumer.h of all in range, scaled as if the whole radius were as
-// densely filled.
+// Sums the photons nearest to a hit point, as hit_flux.consumer.h does for all photons in range, and scales the sum as if
+// the whole radius had their density.
 #include "core/kernel/scene.h"
 
 #define GATHER_SHRINKS
@@ -33,7 +33,7 @@ FN void gather_add(INOUT(Gathered) g, uint query, IN(PhotonRecord) photon, float
     nearest_add(g.nearest, photon, distance_squared);
 }
 
-// Maps that know sums only find no nearest: photon_map does not ask them.
+// Required of every consumer, but not called: photon_map rejects maps that pass on only sums.
 FN vec4 gather_value(uint query, IN(PhotonRecord) photon, float distance_squared) { return vec4(0.0f); }
 FN Gathered gather_sums(uint query, vec4 sums) {
     Gathered g;
@@ -47,7 +47,7 @@ FN void gather_end(IN(Gathered) g, uint query) {
     float whole = max(radius * radius, SMALLEST_RADIUS_SQUARED);
     float disk;
     uint count = nearest_end(g.nearest, whole, disk);
-    // Below that radius the disk is as good as the place is known.
+    // No smaller disk: below this radius the rounding error of the hit point matters.
     float least = hit_least_radius(hits[query]);
     disk = max(disk, least * least);
     vec4 sum = vec4(0.0f);

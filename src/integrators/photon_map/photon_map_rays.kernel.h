@@ -1,19 +1,19 @@
-// Final gathering: a ray from each hit point, over (nearly) specular surfaces to the next one, where the map is looked up.
+// Final gathering: follows a ray from each hit point over (nearly) specular surfaces to the next other one, where the
+// map is looked up.
 #include "core/kernel/scene.h"
 
 #include "integrators/photon_paths/eye_path.h"
 #include "core/kernel/photon.h"
 #include "integrators/photon_paths/hit_point.h"
 
-BUFFER_RO(0, FilmWindow,
-          window)  // samples.x: of the pass's first ray, counted over all passes; w.pixels as in eye_pass
+BUFFER_RO(0, FilmWindow, window)  // first_sample: index of the ray, counted over all passes
 BUFFER_RW(2, FilmPixel, film)
 BUFFER_RO(3, HitPointRecord, hits)
 BUFFER_RO(4, vec4, places)
 BUFFER_RW(5, HitPointRecord, ends)
 BUFFER_RW(6, vec4, queries)
 
-CONST uint GATHER_STREAM = 0x2545f491u;  // keeps the numbers apart from those of eye paths
+CONST uint GATHER_STREAM = 0x2545f491u;  // makes the random numbers independent of those of eye paths
 
 KERNEL(photon_map_rays) {
     FilmWindow w = window[0];
@@ -28,7 +28,7 @@ KERNEL(photon_map_rays) {
         Sampler numbers = sampler_begin(number, w.first_sample, w.seed ^ GATHER_STREAM, w.sampler_kind);
         EyePath path = eye_path_begin(ray_of(s.position, hit_direction(hit)), hit_medium(hit));
         path.walk.depth = int(hit_number(hit)) - 1;
-        // A specular lobe here is the eye path's: what comes over it is followed from the camera.
+        // Specular lobes at this point belong to the eye path, which follows them from the camera.
         if (eye_path_scatters(s, v, numbers, EYE_LOBES_OTHER, path.walk)) {
             FirstHit unseen = no_first_hit();
             follow_eye_path(numbers, false, EYE_BRANCH_CHANCE, path, unseen, end, query);

@@ -22,7 +22,7 @@ StoredPhotons::StoredPhotons(RenderSession& session, uint32_t keep, uint32_t pat
     map_->open(session.device);
     map_->prepare(consumer_);
     const glm::vec4 bounds = session.scene.record.bounds;
-    // A little more than the sphere: what lies on it is in the scene.
+    // Slightly larger than the bounding sphere, because points on it belong to the scene.
     const glm::vec3 extent = bounds.w * 1.001f + 1e-6f * glm::abs(glm::vec3(bounds));
     pass_.low = glm::vec4(glm::vec3(bounds) - extent, 0.0f);
     pass_.high = glm::vec4(glm::vec3(bounds) + extent, 0.0f);
@@ -35,8 +35,8 @@ StoredPhotons::StoredPhotons(RenderSession& session, uint32_t keep, uint32_t pat
     pass_.keep = keep;
 }
 
-// All photons are kept: where they are more than there is room for, they are traced again into what they need. A path is a function
-// of its number and the seed, so that they are as many.
+// All photons are kept: if they do not fit, they are traced again into a store of the required size. A path is a
+// function of its number and the seed, so their number is the same again.
 void StoredPhotons::trace(const BufferHandle& parameters) {
     const BufferHandle arguments = session_.device.create_buffer(sizeof pass_, "pass");
     const BufferHandle counters = session_.device.create_buffer(sizeof(PhotonCounters), "counters");
@@ -68,8 +68,8 @@ void StoredPhotons::trace(const BufferHandle& parameters) {
 void StoredPhotons::gather(const BufferHandle& queries, uint32_t count, float radius, uint64_t pass) {
     if (stored_ == 0) return;
     const PhotonMapCapabilities can = map_->capabilities();
-    // Structures over the hit points are new with these, and those that select photons by chance in each pass: their noise averages
-    // out where the choice is new, too.
+    // Structures over the hit points depend on these. Structures that select photons at random are built in each pass,
+    // so that the noise of the selection averages out.
     if (!built_ || can.needs_queries || (!can.exact && built_for_ != pass)) build(queries, count, radius, pass);
     map_->gather(consumer_, queries, 0, count);
 }

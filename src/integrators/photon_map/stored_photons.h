@@ -1,4 +1,4 @@
-// Photons that are traced once and stay, with the structure that looks them up.
+// Photons that are traced once and kept, and the structure that looks them up.
 #pragma once
 
 #include "core/photons/photon_map.h"
@@ -11,20 +11,22 @@ namespace lampyris {
 
 class StoredPhotons {
  public:
-    // `keep`: kernel::SPPM_KEEP_*. `stream` tells apart the random numbers of maps. Compiles what building and gathering need.
+    // `keep`: kernel::SPPM_KEEP_*. `stream` makes the random numbers of several maps independent. Compiles everything
+    // that building and gathering need.
     StoredPhotons(RenderSession& session, uint32_t keep, uint32_t paths, uint32_t stream,
                   const PhotonConsumer& consumer);
 
-    // Traces the paths, once. `parameters`: kernel::PhotonPathParams. Throws InputError where keys do not reach.
+    // Traces the paths, once. `parameters`: ProgressiveParams for sppm's kernels. Throws InputError if there are not enough
+    // keys.
     void trace(const BufferHandle& parameters);
 
-    // Hands the consumer what `count` queries find, none with a radius above `radius`. Builds the structure where it is not built or
-    // serves other queries or another pass only.
+    // Passes the photons found by `count` queries, none with a radius above `radius`, to the consumer. Builds the
+    // structure first if there is none, or if it is valid only for other queries or another pass.
     void gather(const BufferHandle& queries, uint32_t count, float radius, uint64_t pass);
 
     uint32_t count() const { return stored_; }
     PhotonMap& map() { return *map_; }
-    // Adds to the session's statistics.
+    // Adds its statistics to the session's.
     void finish() const;
 
  private:

@@ -1,4 +1,4 @@
-// Eye pass: follows camera rays over (nearly) specular surfaces to the first one that reflects diffusely, and records it.
+// Eye pass: follows camera rays over (nearly) specular surfaces to the first other one, and records the hit point.
 #include "core/kernel/scene.h"
 
 #include "integrators/photon_paths/eye_path.h"

@@ -1,4 +1,4 @@
-// Follows a path from the eye over (nearly) specular surfaces to its hit point, the first surface that reflects diffusely.
+// Follows a path from the eye over (nearly) specular surfaces to its hit point, the first other surface.
 #ifndef LAMPYRIS_EYE_PATH
 #define LAMPYRIS_EYE_PATH
 
@@ -9,20 +9,20 @@
 BUFFER_RO(1, PhotonPathParams, params)
 
 CONST uint EYE_LOBES_ALL = 0u;
-CONST uint EYE_LOBES_SPECULAR = 1u;  // of a surface the rest of which is gathered
-CONST uint EYE_LOBES_OTHER = 2u;  // of a hit point, whose specular lobes, if any, are followed as part of the eye path
-CONST uint EYE_LOBES_COAT =
-    3u;  // the coat's reflection of a surface the rest of which is gathered, without a choice by chance
+CONST uint EYE_LOBES_SPECULAR = 1u;  // at a surface where the other lobes are gathered
+CONST uint EYE_LOBES_OTHER = 2u;     // at a hit point, whose specular lobes, if any, the eye path follows
+// The coat's reflection, without a random choice, at a surface where the other lobes are gathered.
+CONST uint EYE_LOBES_COAT = 3u;
 
-// What a path does at the first smooth coat over something rough.
-CONST uint EYE_BRANCH_CHANCE = 0u;   // one of the two
-CONST uint EYE_BRANCH_GATHERS = 1u;  // is gathered there
-CONST uint EYE_BRANCH_FOLLOWS = 2u;  // follows the coat's reflection, and has nothing but what that brings
+// What a path does at the first smooth coat over a rough base.
+CONST uint EYE_BRANCH_CHANCE = 0u;   // one of the two, by random choice
+CONST uint EYE_BRANCH_GATHERS = 1u;  // gathers there
+CONST uint EYE_BRANCH_FOLLOWS = 2u;  // follows the coat's reflection, and counts only the light from there
 
 struct EyePath {
     Walk walk;
     vec3 start;
-    Spectrum radiance;  // found on the way
+    Spectrum radiance;  // before the hit point, and direct light there
     float travelled;    // length so far, in scene units
 };
 
@@ -35,7 +35,7 @@ FN EyePath eye_path_begin(IN(Ray) ray, uint medium) {
     return path;
 }
 
-// The numbers of a vertex; as path's, a dimension means the same in every sample.
+// The random numbers of a vertex; as in path, a dimension means the same in every sample.
 CONST uint EYE_LIGHT_CHOICE = 0u;
 CONST uint EYE_LIGHT_POINT = 1u;
 CONST uint EYE_LOBE = 3u;
@@ -45,30 +45,30 @@ CONST uint EYE_BRANCH = 7u;
 CONST uint EYE_VERTEX_DIMENSIONS = 8u;
 FN uint eye_vertex_dimension(IN(Walk) walk) { return CAMERA_DIMENSIONS + uint(walk.depth) * EYE_VERTEX_DIMENSIONS; }
 
-// Width of a pixel on a surface that a ray through it meets after `distance` (scene units), seen face on.
+// Width of a pixel on a surface seen face on, which a ray through it hits after `distance` (scene units).
 FN float pixel_footprint(float distance) {
     CameraRecord camera = scene[0].camera;
     float step = max(abs(camera.screen.z), abs(camera.screen.w));
     return camera.kind == CAMERA_ORTHOGRAPHIC ? step : step * distance;
 }
 
-// Goes on from the vertex at s by one of its lobes; false where the path ends.
+// Continues from the vertex at s by one of its lobes; false if the path ends.
 FN bool eye_path_scatters(IN(Surface) s, IN(Vertex) v, IN(Sampler) numbers, uint lobes, INOUT(Walk) walk) {
     uint dimension = eye_vertex_dimension(walk);
     BsdfSample next;
     float u_lobe = 0.0f;
-    // The coat's reflection is the lobe of the lowest numbers.
+    // The coat's reflection is the lobe of the lowest random numbers.
     if (bsdf_chooses_lobe(v.bsdf) && lobes != EYE_LOBES_COAT) u_lobe = sample_1d_at(numbers, dimension + EYE_LOBE);
     vec2 u_direction = sample_2d_at(numbers, dimension + EYE_DIRECTION);
     if (!bsdf_sample(v.bsdf, v.wo, u_lobe, u_direction, TRANSPORT_RADIANCE, next)) return false;
     bool specular = (next.lobe & LOBE_SPECULAR) != 0u;
     if ((lobes == EYE_LOBES_SPECULAR || lobes == EYE_LOBES_COAT) && !specular) return false;
     if (lobes == EYE_LOBES_OTHER && specular) return false;
-    if (lobes == EYE_LOBES_COAT) next.pdf = 1.0f;  // it was not left to chance
+    if (lobes == EYE_LOBES_COAT) next.pdf = 1.0f;  // there was no random choice
     return walk_leave(walk, s, v, next, params[0].rrdepth, numbers, dimension + EYE_ROULETTE);
 }
 
-// The record of a hit point at s, to which the path's last ray led.
+// Records a hit point at s, which the path's last ray hit.
 FN void record_hit_point(IN(EyePath) path, IN(Surface) s, INOUT(HitPointRecord) hit, OUT(vec4) place) {
     float first_radius = params[0].radius;
     if (!(first_radius > 0.0f)) first_radius = params[0].footprint * pixel_footprint(path.travelled);
@@ -77,17 +77,17 @@ FN void record_hit_point(IN(EyePath) path, IN(Surface) s, INOUT(HitPointRecord) 
         uvec4(floatBitsToUint(ray.origin.x), floatBitsToUint(ray.origin.y), floatBitsToUint(ray.origin.z), s.instance);
     hit.direction = uvec4(floatBitsToUint(ray.direction.x), floatBitsToUint(ray.direction.y),
                           floatBitsToUint(ray.direction.z), s.geometry);
-    // Below that the disk is as good as the point is known.
+    // For smaller disks, the rounding error of the hit point would matter.
     float least = max(4.0f * length_of(s.error), scene[0].bounds.w * params[0].minradius);
     hit.more = uvec4(s.primitive, floatBitsToUint(least), path.walk.medium, uint(path.walk.depth) + 1u);
     hit.radiance.w = first_radius;
     place = vec4(s.position.x, s.position.y, s.position.z, first_radius);
 }
 
-// Follows the path. Where it ends at a hit point, `place` is that and the radius of the first pass; else the radius is negative.
-// `from_camera`: what emits on the way counts in full, a light is sampled at the hit point (direct=nee), and `first` tells of
-// the first surface. A path from another hit point (final gathering) does without: there these are counted already.
-// `branch_asked`: EYE_BRANCH_*.
+// Follows the path. If it ends at a hit point, `place` is its position and the first pass's radius; else the radius is
+// negative. `from_camera`: emission on the way counts in full, a light is sampled at the hit point (direct=nee), and
+// `first` gets the features of the first surface. Paths from another hit point (final gathering) omit these, because
+// they are counted already. `branch_asked`: EYE_BRANCH_*.
 FN void follow_eye_path(IN(Sampler) numbers, bool from_camera, uint branch_asked, INOUT(EyePath) path,
                         INOUT(FirstHit) first, INOUT(HitPointRecord) hit, OUT(vec4) place) {
     uint branch = branch_asked;
@@ -95,7 +95,7 @@ FN void follow_eye_path(IN(Sampler) numbers, bool from_camera, uint branch_asked
     place = vec4(0.0f, 0.0f, 0.0f, -1.0f);
     Surface s;
     while (walk_next(path.walk, s)) {
-        // No vertex before this one sampled lights: what is emitted counts in full.
+        // No previous vertex sampled lights, so emission counts in full.
         if (HAS(EFFECT_AREA_LIGHTS) && from_camera && s.light != NONE)
             path.radiance += path.walk.throughput * light_emission(s, -path.walk.ray.direction);
         path.travelled += s.distance;
@@ -112,10 +112,10 @@ FN void follow_eye_path(IN(Sampler) numbers, bool from_camera, uint branch_asked
         if (action == VISIBLE_SPLIT && branch == EYE_BRANCH_CHANCE) {
             action = sample_1d_at(numbers, dimension + EYE_BRANCH) < 0.5f ? VISIBLE_GATHER : VISIBLE_FOLLOW;
             path.walk.throughput = 2.0f * path.walk.throughput;
-            lobes = EYE_LOBES_SPECULAR;  // the rest is gathered, half of the time
+            lobes = EYE_LOBES_SPECULAR;  // the other lobes are gathered, with probability 1/2
         } else if (action == VISIBLE_SPLIT) {
             action = branch == EYE_BRANCH_GATHERS ? VISIBLE_GATHER : VISIBLE_FOLLOW;
-            if (action == VISIBLE_FOLLOW) path.radiance = Spectrum(0.0f);  // the other branch has it
+            if (action == VISIBLE_FOLLOW) path.radiance = Spectrum(0.0f);  // counted by the other branch
             lobes = EYE_LOBES_COAT;
             branch = EYE_BRANCH_CHANCE;
         }
@@ -133,7 +133,7 @@ FN void follow_eye_path(IN(Sampler) numbers, bool from_camera, uint branch_asked
     }
     if (HAS(EFFECT_ENVIRONMENT) && from_camera && path.walk.escaped)
         path.radiance += path.walk.throughput * environment_radiance(path.walk.ray.direction);
-    if (branch == EYE_BRANCH_FOLLOWS) path.radiance = Spectrum(0.0f);  // it met no coat
+    if (branch == EYE_BRANCH_FOLLOWS) path.radiance = Spectrum(0.0f);  // no coat: the other branch counts all
     hit.radiance = slot_of(path.radiance, hit.radiance.w);
 }
 

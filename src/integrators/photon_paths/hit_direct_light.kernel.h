@@ -1,5 +1,5 @@
-// Direct light at the window's range of hit points, which stay: sampled anew in every pass, where an eye path that is followed once
-// would sample it once.
+// Direct light at the window's range of hit points. They are permanent, so light is sampled again in every pass: the
+// eye path, which is followed once, would sample it only once.
 #include "core/kernel/scene.h"
 
 #include "core/kernel/film.h"
@@ -11,9 +11,9 @@ BUFFER_RO(1, PhotonPass, passes)
 BUFFER_RW(2, FilmPixel, film)
 BUFFER_RW(3, HitPointRecord, hits)
 BUFFER_RO(4, vec4, queries)
-BUFFER_RW(5, vec4, ways)  // what each eye path found on its way
+BUFFER_RW(5, vec4, ways)  // radiance of each eye path before its hit point
 
-CONST uint DIRECT_STREAM = 0x3c6ef372u;  // keeps the numbers apart from those of eye paths
+CONST uint DIRECT_STREAM = 0x3c6ef372u;  // makes the random numbers independent of those of eye paths
 
 KERNEL(hit_direct_light) {
     FilmWindow w = window[0];

@@ -1,4 +1,4 @@
-// What a hit point makes of a photon: the BSDF times its power, as if it had arrived at the hit point itself.
+// A photon's contribution to a hit point: the BSDF times its power, as if it had arrived at the hit point itself.
 #include "core/kernel/scene.h"
 
 #include "core/kernel/gather.h"
@@ -11,8 +11,8 @@ BUFFER_RW(18, vec4, biases)
 struct Gathered {
     HitPoint point;
     float over_radius_squared;
-    vec4 sum;       // BSDF times power; w: photons
-    Spectrum bias;  // what of the sum the radius has brought in: see gather_add
+    vec4 sum;       // BSDF times power; w: number of photons
+    Spectrum bias;  // part of the sum that is due to the radius: see gather_add
 };
 
 FN Gathered gather_begin(uint query) {
@@ -28,14 +28,14 @@ FN Gathered gather_begin(uint query) {
 FN void gather_add(INOUT(Gathered) g, uint query, IN(PhotonRecord) photon, float distance_squared, float weight) {
     vec4 value = hit_point_reflects(g.point, photon, weight);
     g.sum += value;
-    // A disk of radius r sees too much by r^2/8 times the Laplacian (Hachisuka et al. 2010, equation 6, with k2 = 1/4). That is
-    // estimated by the Laplacian of the kernel 4 (1 - t)^3 / (pi r^2), t = d^2 / r^2: as a share of what the disk's own
-    // kernel 1 / (pi r^2) counts, a photon has the weight 6 (1 - t) (3 t - 1).
+    // A disk of radius r overestimates by r^2/8 times the Laplacian (Hachisuka et al. 2010, equation 6, with k2 = 1/4).
+    // That is estimated by the Laplacian of the kernel 4 (1 - t)^3 / (pi r^2), t = d^2 / r^2. Relative to the disk's
+    // own kernel 1 / (pi r^2), this gives a photon the weight 6 (1 - t) (3 t - 1).
     float t = distance_squared * g.over_radius_squared;
     g.bias += spectrum_of(value) * (6.0f * (1.0f - t) * (3.0f * t - 1.0f));
 }
 
-// For structures over the hit points: the surface is found again for each photon, and the bias is not estimated.
+// For structures over the hit points: the surface is recomputed for each photon, and the bias is not estimated.
 FN vec4 gather_value(uint query, IN(PhotonRecord) photon, float distance_squared) {
     return hit_point_reflects(hit_point(hits[query]), photon, 1.0f);
 }

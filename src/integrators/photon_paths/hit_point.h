@@ -1,4 +1,5 @@
-// A hit point as consumers of photons see it: the surface found again from its record, and what a photon is worth there.
+// A hit point for consumers of photons: the surface, recomputed from its record, and the contribution of a photon
+// there.
 #ifndef LAMPYRIS_HIT_POINT
 #define LAMPYRIS_HIT_POINT
 
@@ -7,7 +8,7 @@
 
 struct HitPoint {
     Vertex vertex;
-    vec3 ng;  // on the side that the eye is on
+    vec3 ng;  // on the eye's side
     uint both_sides;
 };
 
@@ -46,17 +47,20 @@ FN HitPoint hit_point(IN(HitPointRecord) h) {
     return p;
 }
 
-// Photons on the back of a thin wall are none of this side's. `cosine`: of the direction they come from with p.ng.
+// Photons on the back of a thin wall do not count on this side. `cosine`: between the direction they come from and
+// p.ng.
 FN bool hit_point_sees(IN(HitPoint) p, float cosine) { return p.both_sides != 0u || cosine > 0.0f; }
 
-// The BSDF times the photon's power; w: the photons that it stands for. Nothing where it is none of this side's.
+// The BSDF times the photon's power; w: the number of photons that it represents. Zero if the photon is on the other
+// side.
 FN vec4 hit_point_reflects(IN(HitPoint) p, IN(PhotonRecord) photon, float weight) {
     vec3 incident = -photon_direction(photon);
     float cosine = dot3(incident, p.ng);
     if (!hit_point_sees(p, cosine)) return vec4(0.0f);
     vec3 wi = to_local(p.vertex.frame, incident);
     Spectrum f = bsdf_eval(p.vertex.bsdf, p.vertex.wo, wi, TRANSPORT_RADIANCE);
-    // Photons are counted on the geometric surface, the BSDF wants the shading normal's cosine (clamped where grazing).
+    // Photons are counted on the geometric surface, but the BSDF needs the shading normal's cosine (clamped if
+    // grazing).
     Spectrum value = f * photon_power(photon) * (weight * abs(wi.z) / max(abs(cosine), GRAZING_COSINE));
     return slot_of(value, weight);
 }

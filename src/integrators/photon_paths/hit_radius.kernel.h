@@ -1,4 +1,5 @@
-// Gives each hit point the radius of this pass, clears what it gathers, and finds the box in which photons are of use.
+// Computes each hit point's radius for this pass, clears its gathered flux, and finds the box in which photons are
+// needed.
 #include "core/kernel/prelude.h"
 #include "core/kernel/layout.h"
 #include "core/kernel/math.h"
@@ -13,13 +14,13 @@ BUFFER_RW(5, vec4, gathered)
 BUFFER_RW(6, uint, counters)
 BUFFER_RW(7, vec4, biases)
 
-// Floats as integers in the same order.
+// Maps floats to integers that have the same order.
 FN uint ordered_bits(float x) {
     uint bits = floatBitsToUint(x);
     return (bits & 0x80000000u) != 0u ? ~bits : bits | 0x80000000u;
 }
 
-// Most hit points change nothing: look before asking for the cache line.
+// Most hit points change nothing: test before an atomic operation claims the cache line.
 FN void raise(uint counter, uint value) {
     if (value > counters[counter]) ATOMIC_MAX_U32(counters[counter], value);
 }

@@ -1,4 +1,4 @@
-// What an HitPointRecord holds, by name. It is packed so that kernels read four numbers at a time.
+// The contents of an HitPointRecord, by name. It is packed so that kernels read four numbers at a time.
 #ifndef LAMPYRIS_HIT_RECORD
 #define LAMPYRIS_HIT_RECORD
 
@@ -13,10 +13,10 @@ FN vec3 hit_origin(IN(HitPointRecord) h) {
 FN uint hit_instance(IN(HitPointRecord) h) { return h.origin.w; }
 FN uint hit_geometry(IN(HitPointRecord) h) { return h.direction.w; }
 FN uint hit_primitive(IN(HitPointRecord) h) { return h.more.x; }
-// Below it a disk is as good as the point is known.
+// For smaller disks, the rounding error of the hit point would matter.
 FN float hit_least_radius(IN(HitPointRecord) h) { return uintBitsToFloat(h.more.y); }
 FN uint hit_medium(IN(HitPointRecord) h) { return h.more.z; }  // through which it was reached
-FN uint hit_number(IN(HitPointRecord) h) { return h.more.w; }  // of the vertex on the eye path, from 1
+FN uint hit_number(IN(HitPointRecord) h) { return h.more.w; }  // number of the vertex on the eye path, from 1
 FN float hit_first_radius(IN(HitPointRecord) h) { return h.radiance.w; }
 FN float hit_filter_weight(IN(HitPointRecord) h) { return h.throughput.w; }
 

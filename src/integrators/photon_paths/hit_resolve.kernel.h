@@ -1,4 +1,5 @@
-// Ends a pass, for the window's range of hit points: what was gathered becomes radiance and a sample of the film, and radii shrink.
+// Ends a pass for the window's range of hit points: converts gathered flux to radiance, adds it to the film as a
+// sample, and shrinks the radii.
 #include "core/kernel/scene.h"
 
 #include "core/kernel/film.h"
@@ -14,9 +15,9 @@ BUFFER_RO(5, vec4, queries)
 BUFFER_RO(6, vec4, gathered)
 BUFFER_RO(8, vec4, biases)
 BUFFER_RW(9, FilmBias, film_bias)
-BUFFER_RW(7, vec2, statistics)  // x: squared radius over that of the first pass; y: photons kept so far (N)
+BUFFER_RW(7, vec2, statistics)  // x: squared radius over that of the first pass; y: photons that count so far (N)
 
-// The scale of the squared radius after M more photons (Hachisuka et al. 2008, equation 7): R'^2 = R^2 (N + a M) / (N + M).
+// Scales the squared radius after M more photons (Hachisuka et al. 2008, equation 7): R'^2 = R^2 (N + a M) / (N + M).
 FN vec2 shrink(vec2 statistic, float found) {
     if (!(found > 0.0f)) return statistic;
     float kept = statistic.y + params[0].alpha * found;
@@ -39,8 +40,8 @@ KERNEL(hit_resolve) {
         vec4 q = queries[at];
         if (q.w >= 0.0f) {
             vec4 sum = gathered[at];
-            // Summing flux over area pass by pass is the shared-statistics estimate tau / (pi R^2), without its rescaling:
-            // tau_n / R_n^2 = sum of Phi_i / R_i^2.
+            // Adding flux over area in every pass equals the shared-statistics estimate tau / (pi R^2), without its
+            // rescaling: tau_n / R_n^2 = sum of Phi_i / R_i^2.
             Spectrum share = spectrum_of(hit.throughput) * (1.0f / (PI * max(q.w * q.w, SMALLEST_RADIUS_SQUARED)));
             radiance += share * spectrum_of(sum);
             bias += share * spectrum_of(biases[at]);

@@ -1,4 +1,4 @@
-// Host steps that all photon-mapping integrators take: kernels timed by phase, counters read back, statistics filled.
+// Host steps of all photon-mapping integrators: timing kernels by phase, reading counters back, filling in statistics.
 #pragma once
 
 #include "core/photons/photon_map.h"
@@ -10,7 +10,7 @@
 
 namespace lampyris {
 
-// The kernels, and what becomes of the photons that hit points find.
+// The kernels, and the consumer of the photons that hit points find.
 namespace photon_files {
 inline constexpr const char* kEye = "integrators/photon_paths/eye_pass.kernel.h";
 inline constexpr const char* kRadius = "integrators/photon_paths/hit_radius.kernel.h";
@@ -22,22 +22,22 @@ inline constexpr const char* kConsumer = "integrators/photon_paths/hit_flux.cons
 
 using PhotonCounters = std::array<uint32_t, kernel::PHOTON_COUNTERS>;
 
-// Runs a kernel over [0, count), and adds what it took (by timestamps, on Vulkan) to a phase. `file` is the kernel's.
+// Runs a kernel over [0, count), and adds its time (by timestamps, on Vulkan) to a phase. `file` is the kernel's file.
 void run_in_phase(RenderSession& session, const char* file, const Kernel& kernel, const char* phase,
                   std::initializer_list<NamedBuffer> buffers, uint32_t count);
 
 PhotonCounters download_photon_counters(const Buffer& counters);
 
-// Whether keys tell all photons apart (photon_key), where no path leaves more than `most`.
+// Whether keys are unique (photon_key) if no path leaves more than `most` photons.
 constexpr bool keys_reach(uint32_t paths, uint32_t most) { return uint64_t(paths) * most <= uint64_t(1) << 32; }
 
-// The box of the hit points, which hit_radius found.
+// Unpacks the box of the hit points, which hit_radius computed.
 void unpack_box(const PhotonCounters& counters, kernel::PhotonPass& pass);
 
-// Adds what a map took and how large it is.
+// Adds a map's times and sizes.
 void add_map_statistics(RenderSession& session, const PhotonMap& map);
 
-// The radii of the last pass, of `count` hit points.
+// Records the radii of `count` hit points in the last pass.
 void note_radii(RenderSession& session, const Buffer& queries, const Buffer& hits, size_t count);
 
 }  // namespace lampyris

@@ -1,5 +1,6 @@
-// Photon pass: emits a path and keeps a photon wherever an eye path might gather: also where this path's own chance has it pass a
-// mask or meet the mirror of a mix, since the eye path takes that chance, too, and it counts once.
+// Photon pass: emits a path, and keeps a photon wherever an eye path might gather. It does so even if this path's
+// random choice passes a mask, or finds a mirror in a mix: the eye path makes that choice, too, and it must count only
+// once.
 #include "core/kernel/scene.h"
 
 #include "core/kernel/photon_layout.h"
@@ -12,8 +13,8 @@ BUFFER_RO(1, PhotonPathParams, params)
 BUFFER_RW(2, PhotonRecord, photons)
 BUFFER_RW(3, uint, counters)
 
-CONST uint PHOTON_STREAM = 0x5f3759dfu;  // keeps the numbers apart from those of pixels
-// The numbers of a vertex.
+CONST uint PHOTON_STREAM = 0x5f3759dfu;  // makes the random numbers independent of those of pixels
+// The random numbers of a vertex.
 CONST uint PHOTON_LOBE = 0u;
 CONST uint PHOTON_DIRECTION = 1u;
 CONST uint PHOTON_ROULETTE = 3u;
@@ -31,7 +32,7 @@ FN void keep_photon(vec3 position, vec3 direction, Spectrum power, uint key) {
 KERNEL(photon_pass) {
     PhotonPass pass = passes[0];
     uint path = pass.first_path + index;
-    // Paths of one pass are a stratified set: the path is the sample, the pass takes the pixel's place.
+    // The paths of a pass are a stratified set: the path is the sampler's sample, and the pass its pixel.
     Sampler numbers = sampler_begin(pass.number, path, pass.seed ^ PHOTON_STREAM, pass.sampler_kind);
     uint u_choice = 0u;
     if (scene[0].light_count > 1u) u_choice = sample_bits_1d_at(numbers, 0u);
@@ -54,11 +55,12 @@ KERNEL(photon_pass) {
         if (walk_crosses_or_passes(walk, s, fate)) continue;
         Vertex v = walk_vertex(walk, s);
         uint action = bsdf_visible_action(v.bsdf, params[0].glossy);
-        // What is reflected here is no caustic, but for the smooth coat over it: that is known once a lobe is chosen.
+        // Light that is reflected here is no caustic, except by a smooth coat, which is known only once a lobe is
+        // chosen.
         bool ends = pass.keep == KEEP_CAUSTIC && action == VISIBLE_GATHER;
         if (walk.depth >= walk.maxdepth || ends) break;
 
-        // v.wo is where the light comes from: importance flows as a camera's path does.
+        // v.wo points to where the light comes from: photons sample the BSDF as a camera path does, but for importance.
         uint dimension = EMISSION_DIMENSIONS + uint(walk.depth) * PHOTON_VERTEX_DIMENSIONS;
         BsdfSample next;
         float u_lobe = 0.0f;

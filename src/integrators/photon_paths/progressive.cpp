@@ -36,7 +36,7 @@ class ProgressivePhotonMapping {
           device_(session.device),
           params_(params),
           fixed_(eye_samples > 0),
-          // A path that is followed once takes both ways at a coat.
+          // A path that is followed only once takes both branches at a coat.
           branches_(fixed_ && (session.scene.effects.mask() & kernel::EFFECT_LAYERED_COAT) ? 2 : 1),
           points_(std::max(eye_samples, 1u) * branches_),
           pixels_(session.film.pixel_count()),
@@ -48,14 +48,14 @@ class ProgressivePhotonMapping {
                                                 : session.scene.width() * session.scene.height();
         capacity_ = params.store > 0 ? uint32_t(params.store)
                                      : uint32_t(std::clamp<uint64_t>(4 * uint64_t(paths_), 65536, 1u << 30));
-        // A part has so few paths that keys tell a photon for each of their bounces apart.
+        // Parts are small enough for a key per bounce of each path.
         part_ = std::max(1u, std::min(paths_, std::numeric_limits<uint32_t>::max() / (uint32_t(params.maxdepth) + 1)));
         const uint64_t effects = session.scene.effects.mask();
         window_ = device_.create_buffer(sizeof(kernel::FilmWindow), "film window");
         kernel::PhotonPathParams eye_params = shared_params(params_);
         params_buffer_ = argument_buffer(device_, eye_params, "parameters");
         if (samples_lights_each_pass()) {
-            eye_params.direct = kernel::DIRECT_PHOTONS;  // eye paths leave it to hit_direct_light
+            eye_params.direct = kernel::DIRECT_PHOTONS;  // direct light is left to hit_direct_light
             ways_ = device_.create_buffer(points * sizeof(glm::vec4), "radiance on the way to hit points");
         }
         eye_params_buffer_ = argument_buffer(device_, eye_params, "parameters of eye paths");
@@ -66,7 +66,8 @@ class ProgressivePhotonMapping {
         gathered_ = device_.create_buffer(points * sizeof(glm::vec4), "gathered flux");
         statistics_ = device_.create_buffer(points * sizeof(glm::vec2), "photon statistics");
         store_ = device_.create_buffer(size_t(capacity_) * sizeof(kernel::PhotonRecord), "photons");
-        // After the buffers: a device that must address large ones compiles at the first run.
+        // After the buffers: if some are too large to bind, the device compiles kernels only at their first run, when
+        // it knows which.
         eye_ = device_.compile(photon_files::kEye, effects);
         radius_ = device_.compile(photon_files::kRadius, 0);
         photons_ = device_.compile(photon_files::kPhotons, effects);
@@ -79,7 +80,7 @@ class ProgressivePhotonMapping {
         biases_ = device_.create_buffer(points * sizeof(glm::vec4), "bias of gathered flux");
         film_bias_ = device_.create_buffer(size_t(pixels_) * sizeof(kernel::FilmBias), "bias of the film");
         film_bias_->fill_zero();
-        // A structure over the hit points hands over sums, which say nothing of how flux varies within a disk.
+        // A structure over the hit points passes on only sums, which do not show how flux varies within a disk.
         if (!map_->capabilities().sums_only) session.film.attach_bias(film_bias_, double(params.confidence));
         consumer_ = {photon_files::kConsumer,
                      effects,
@@ -102,7 +103,7 @@ class ProgressivePhotonMapping {
     }
 
  private:
-    // So that the session does not time the compiler.
+    // Prepares the kernels, so that the session does not time the compiler.
     void get_ready() {
         run_eye(0);
         run_radius(0);
@@ -132,7 +133,7 @@ class ProgressivePhotonMapping {
         const PhotonCounters box = download_counters();
         unpack_box(box, pass_);
         largest_radius_ = std::bit_cast<float>(box[kernel::HIT_LARGEST_RADIUS]);
-        // No eye path ends where photons would be of use: there is nothing to emit them for.
+        // Without a hit point that gathers, no photons are needed.
         if (box[kernel::HIT_LARGEST_RADIUS] > 0) photon_pass();
         resolve(pass);
     }
@@ -145,10 +146,10 @@ class ProgressivePhotonMapping {
         followed_ = true;
     }
 
-    // At the hit points, which are the same in every pass.
+    // Direct light at the hit points, which are the same in every pass.
     void sample_lights() {
-        // Shadow rays take a few dozen turns each: far from where some drivers end loops. What the first pass saves must not be saved
-        // again, so that a part is not repeated.
+        // This many points take far fewer iterations than where some drivers end loops: a few dozen per shadow ray. A
+        // part is never repeated, because the radiance that the first pass saves must not be saved twice.
         constexpr uint32_t kPoints = 256;
         for (uint32_t done = 0; done < points_; done += kPoints) {
             set_window(done, std::min(points_ - done, kPoints));
@@ -157,7 +158,7 @@ class ProgressivePhotonMapping {
     }
 
     void resolve(uint64_t pass) {
-        // The kernel's loop takes one turn a hit point: far from where some drivers end loops.
+        // The kernel's loop takes one iteration per hit point: far fewer than where some drivers end loops.
         constexpr uint32_t kTurns = 16384;
         const uint32_t samples = points_ / branches_;
         for (uint32_t done = 0; done < samples; done += kTurns) {
@@ -171,7 +172,7 @@ class ProgressivePhotonMapping {
         window_->upload(&window, sizeof window);
     }
 
-    // Emits the pass's paths in parts whose photons fit into the store, and gathers each.
+    // Emits the pass's paths in parts whose photons fit into the store, and gathers the photons of each.
     void photon_pass() {
         for (uint32_t first = 0; first < paths_;) {
             const uint32_t count = std::min(part_, paths_ - first);
@@ -185,7 +186,8 @@ class ProgressivePhotonMapping {
             const PhotonCounters counters = download_counters();
             const uint32_t stored = counters[kernel::PHOTONS_STORED];
             session_.photons.rays += counters[kernel::PHOTON_RAYS];
-            // Where this part's photons find no room, or no keys, it is traced again.
+            // If this part's photons do not fit, or have no unique keys, it is traced again with fewer paths or a
+            // larger store.
             if (!keys_reach(count, counters[kernel::PHOTONS_MOST_KEPT])) {
                 part_ = std::max(1u, count / 2);
                 continue;
@@ -299,8 +301,8 @@ class ProgressivePhotonMapping {
     Device& device_;
     const ProgressiveParams params_;
     const bool fixed_;
-    const uint32_t branches_;  // hit points of an eye path
-    const uint32_t points_;    // hit points a pixel
+    const uint32_t branches_;  // hit points per eye path
+    const uint32_t points_;    // hit points per pixel
     const uint32_t pixels_;
     uint32_t paths_ = 0, part_ = 0, capacity_ = 0;
     SampleSlices eye_slices_;

@@ -11,8 +11,9 @@ namespace lampyris {
 // (Knaus and Zwicker 2011, equation 18).
 double memoryless_scale(uint64_t pass, double alpha);
 
-// Renders until the session's budget is spent. `eye_samples` is 0 where each pass follows new eye paths, one a pixel (sppm); else
-// that many a pixel are followed once, and keep their hit points and statistics (ppm). Throws InputError, MachineError.
+// Renders until the session's budget is spent. With `eye_samples` 0, each pass follows a new eye path per pixel (sppm).
+// Else that number of eye paths per pixel is followed once, and their hit points and statistics stay (ppm). Throws
+// InputError, MachineError.
 void render_progressive(RenderSession& session, const ProgressiveParams& params, uint32_t eye_samples);
 
 }  // namespace lampyris

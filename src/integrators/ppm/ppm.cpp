@@ -14,7 +14,7 @@ class Ppm : public Integrator {
     ErrorRate error_rate() const override { return ErrorRate::of_photons(double(params.alpha)); }
     bool fixes_eye_samples() const override { return true; }
     std::string unseen_error(uint32_t eye_samples) const override {
-        constexpr uint32_t kEnough = 16;  // what is left of a pixel's inside is then small beside the rest, as a rule
+        constexpr uint32_t kEnough = 16;  // then the error within the pixel is usually small beside the rest
         if (eye_samples >= kEnough) return {};
         return fmt::format(
             "all passes share {} of a pixel: edges and reflections between are not seen, nor what else of "
