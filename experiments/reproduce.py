@@ -79,7 +79,7 @@ def changes_of(words: list[str]) -> dict[str, dict]:
     for word in words:
         match = re.fullmatch(r"(\w+)\.(\w+)=(.*)", word, flags=re.DOTALL)
         if not match or match[1] not in known:
-            raise DeclarationError(f"--set {word}: TARGET.KEY=VALUE is wanted; targets: {', '.join(sorted(known))}")
+            raise DeclarationError(f"--set {word}: expected TARGET.KEY=VALUE; targets: {', '.join(sorted(known))}")
         target, key, text = match.groups()
         try:
             value = tomllib.loads(f"value = {text}")["value"]
@@ -91,7 +91,7 @@ def changes_of(words: list[str]) -> dict[str, dict]:
             raise DeclarationError(f"--set {word}: {target} has no '{key}'; it has: {', '.join(sorted(declared))}")
         number = isinstance(value, int | float) and isinstance(declared[key], int | float)
         if not number and not isinstance(value, type(declared[key])):
-            raise DeclarationError(f"--set {word}: a value such as {json.dumps(declared[key])} is wanted")
+            raise DeclarationError(f"--set {word}: expected a value such as {json.dumps(declared[key])}")
         changes.setdefault(target, {})[key] = value
     return changes
 
@@ -116,7 +116,7 @@ def reproduction_of(arguments: argparse.Namespace) -> Reproduction:
     name = "build/reproduce-full" if arguments.full else "build/reproduce"
     for file in (arguments.program, arguments.methods, arguments.scenes):
         if not file.is_file():
-            raise DeclarationError(f"{file} is not there")
+            raise DeclarationError(f"{file} does not exist")
     made = Reproduction(
         (arguments.folder or ROOT / name).resolve(),
         Machine.ask(arguments.program, arguments.device),
@@ -128,7 +128,7 @@ def reproduction_of(arguments: argparse.Namespace) -> Reproduction:
     )
     if "vulkan" in made.backends and not made.machine.vulkan:
         which = f" matches '{arguments.device}'" if arguments.device else ""
-        raise DeclarationError(f"no Vulkan device{which}; `lampyris devices` lists them, --backends cpu does without")
+        raise DeclarationError(f"no Vulkan device{which}; `lampyris devices` lists them, --backends cpu needs none")
     return made
 
 
@@ -152,15 +152,15 @@ def reproduce(arguments: argparse.Namespace) -> int:
             print(told, file=sys.stderr)
         shutil.rmtree(folder / "unfinished", ignore_errors=True)
         missing = [key for key in plan["runs"] if not reproduction.store.place(key).exists()]
-        print(f"{len(targets)} targets, {len(plan['runs'])} runs, {len(missing)} of them still to be made", flush=True)
+        print(f"{len(targets)} targets, {len(plan['runs'])} runs, {len(missing)} of them still to do", flush=True)
         status = carry_out(folder, arguments)
         if status:
-            print("error: not everything could be made; what stands above says what and why", file=sys.stderr)
+            print("error: some runs could not be done; the messages above say which and why", file=sys.stderr)
             return 2
     records = [json.loads((folder / "runs" / key / "run.json").read_text()) for key in plan["runs"]]
     failed = [one for one in records if "failed" in one]
     if failed:
-        print(f"{len(failed)} runs were more than the machine could do; the page says which")
+        print(f"the machine could not do {len(failed)} runs; the page lists them")
     if arguments.publish:
         publish(folder)
     print(folder / "index.html")

@@ -37,7 +37,7 @@ uint32_t parse_count(const std::string& text) {
     double value = 0;
     const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (code != std::errc() || end != text.data() + text.size() || !(value >= 1 && value <= 2e8))
-        throw InputError(fmt::format("error: --points {}: expected numbers from 1 to 2e8, as 1e3,1e6", text));
+        throw InputError(fmt::format("error: --points {}: expected numbers from 1 to 2e8, for example 1e3,1e6", text));
     return uint32_t(value);
 }
 
@@ -174,7 +174,7 @@ void add_bench(CLI::App& parent, std::function<int()>& run) {
         ->delimiter(',')
         ->check(CLI::IsMember(photon_distributions()))
         ->capture_default_str();
-    maps->add_option("--queries", options->settings.queries, "queries of a measurement")->capture_default_str();
+    maps->add_option("--queries", options->settings.queries, "queries per measurement")->capture_default_str();
     maps->add_option("--found", options->settings.found, "average photons per query")->capture_default_str();
     maps->add_option("--seconds", options->settings.seconds, "shortest time of a measurement")->capture_default_str();
     maps->add_option("--device", options->device.device, "number, or part of the name");

@@ -105,7 +105,7 @@ int compare(const CompareOptions& options) {
 
 void add_compare(CLI::App& parent, std::function<int()>& run) {
     auto options = std::make_shared<CompareOptions>();
-    CLI::App* command = parent.add_subcommand("compare", "Tell how far an image is from its reference");
+    CLI::App* command = parent.add_subcommand("compare", "Measure how much an image differs from its reference");
     command->add_option("IMAGE", options->image, "the image (EXR, PFM, PNG, or what OpenImageIO reads)")->required();
     command->add_option("REF", options->reference, "the reference")->required();
     command->add_flag("--json", options->json, "print JSON (docs/metrics.md)");

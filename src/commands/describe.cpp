@@ -165,7 +165,7 @@ int describe(const DescribeOptions& options) {
 void add_describe(CLI::App& parent, std::function<int()>& run) {
     auto options = std::make_shared<DescribeOptions>();
     CLI::App* command =
-        parent.add_subcommand("describe", "Tell what a scene calls for, who asks for it, and what it costs");
+        parent.add_subcommand("describe", "Show what a scene needs, which parts need it, and what it costs");
     command->add_option("SCENE", options->scene, "a pbrt-v4 scene file")->required();
     command->add_flag("--json", options->json, "print JSON (docs/describe.md)");
     command->add_flag("--skip-unsupported", options->skip_unsupported,

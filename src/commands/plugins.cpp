@@ -114,10 +114,9 @@ void print_markdown(const std::vector<const RegistryBase*>& kinds) {
 // How a scene's Integrator directive is read, as a page.
 void print_pbrt_integrators() {
     fmt::print(
-        "\n## Integrators of pbrt-v4\n\nWhat renders where a scene names one of them. The parameters of pbrt-v4 are "
-        "known words; "
-        "those that have no effect are told\nin a note, unless they have pbrt-v4's default.\n\n"
-        "| pbrt-v4's | rendered by | difference | parameters taken over | of no effect, or (*) refused |\n"
+        "\n## Integrators of pbrt-v4\n\nWhat Lampyris renders with if a scene names one of them. The parameters of "
+        "pbrt-v4 are recognised; those without effect are reported\nin a note, unless they have pbrt-v4's default.\n\n"
+        "| pbrt-v4's | rendered by | difference | parameters used | without effect, or (*) refused |\n"
         "|---|---|---|---|---|\n");
     for (const PbrtIntegrator& known : pbrt_integrators()) {
         std::string taken, other;
@@ -190,7 +189,7 @@ void add_plugins(CLI::App& parent, std::function<int()>& run) {
     auto options = std::make_shared<PluginsOptions>();
     CLI::App* command = parent.add_subcommand("plugins", "List what is registered, and the parameters that it takes");
     command->add_option("KIND", options->kind, "shape, material, light, integrator, ...");
-    command->add_option("NAME", options->name, "one of that kind: tells its parameters");
+    command->add_option("NAME", options->name, "one of that kind: shows its parameters");
     command->add_flag("--json", options->json, "print JSON (docs/describe.md)");
     command->add_flag("--markdown", options->markdown, "print the reference page");
     command->add_option("--plugin", options->files, "Load a plugin first; may be given several times")

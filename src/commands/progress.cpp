@@ -75,7 +75,7 @@ void ProgressDisplay::note_unstable_target(const RenderProgress& progress) {
                                     : fmt::format("{:.2e}, below --target-error, but unstable: {}",
                                                   progress.estimated_error, progress.unstable);
     const std::string note = fmt::format(
-        "note: after {} the estimated error is {}; rendering goes on while that is so, or until {}{}\n",
+        "note: after {} the estimated error is {}; rendering continues until this changes, or until {}{}\n",
         counted(progress.passes, "pass", "passes"), why, endless ? "Ctrl-C, which writes the image" : "another limit",
         unknown ? "" : "; --accept-unstable would have stopped here");
     terminal_ && !quiet_ ? tell_in_place(note) : tell_text(note);

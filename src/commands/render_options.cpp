@@ -98,7 +98,7 @@ void RenderOptions::finish() {
     if (texts.passes) limits.passes = uint64_t(*texts.passes);
     if (!std::isfinite(write.exposure)) throw InputError("error: --exposure must be a number of stops");
     if (limits.accept_unstable && !limits.target_error)
-        throw InputError("error: --accept-unstable says how --target-error stops, and there is none");
+        throw InputError("error: --accept-unstable has no effect without --target-error");
     for (const std::string& setting : texts.settings) {
         const size_t dot = setting.find('.'), equals = setting.find('=');
         if (dot == std::string::npos || equals == std::string::npos || dot > equals || dot == 0)
@@ -120,13 +120,14 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
     command.add_option("SCENE", o.texts.scene, "Scene in pbrt-v4's text format")->required();
     command.add_option("-o,--output", o.outputs, "Image to write: .exr, .pfm or .png; may be given several times")
         ->type_name("IMAGE");
-    command.add_option("--integrator", o.request.integrator, "Integrator in place of the scene's, with parameters")
+    command
+        .add_option("--integrator", o.request.integrator, "Integrator to use instead of the scene's, with parameters")
         ->type_name("NAME[:key=value,...]");
     command
         .add_option("--photon-map", o.request.photon_map,
                     "Photon-query structure of integrators that use one, with parameters")
         ->type_name("NAME[:key=value,...]");
-    command.add_option("--backend", o.request.backend, "What computes: see `lampyris devices`")
+    command.add_option("--backend", o.request.backend, "Backend that renders: see `lampyris devices`")
         ->capture_default_str()
         ->type_name("NAME");
     command.add_option("--device", o.request.device_options.device, "Number or part of the name of the device")
@@ -134,11 +135,12 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
     command.add_option("--threads", o.request.device_options.threads, "Threads of the CPU (default: all)")
         ->check(CLI::Range(1u, 4096u));
     command.add_option("--seed", o.request.seed, "Seed of the random numbers");
-    command.add_option("--resolution", o.texts.resolution, "Size in place of the scene's")->type_name("WxH");
+    command.add_option("--resolution", o.texts.resolution, "Size to use instead of the scene's")->type_name("WxH");
     command.add_option("--crop", o.texts.crop, "Render these pixels only (half-open)")->type_name("x0,y0,x1,y1");
     command
-        .add_option("--spp", o.texts.spp,
-                    "Stop after this many samples per pixel; ppm: hit points per pixel, which stay")
+        .add_option(
+            "--spp", o.texts.spp,
+            "Stop after this many samples per pixel; ppm: number of hit points per pixel, which all passes share")
         ->type_name("N");
     command.add_option("--passes", o.texts.passes, "Stop after this many passes")->type_name("N");
     command.add_option("--time", o.texts.time, "Stop after this much rendering time: 30s, 5min, 2h")
@@ -148,17 +150,20 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
                     "Stop when the estimated relMSE is below this and can be trusted")
         ->type_name("E");
     command.add_flag("--accept-unstable", o.request.limits.accept_unstable,
-                     "Let --target-error stop at an estimate that cannot be trusted, too");
-    command.add_option("--reference", o.request.reference, "Reference image: the statistics tell the error over time")
+                     "Let --target-error also stop at an estimate that cannot be trusted");
+    command
+        .add_option("--reference", o.request.reference,
+                    "Reference image: the statistics then include the error against it over time")
         ->type_name("REF.exr");
-    command.add_option("--stats", o.statistics_file, "Write what it cost as JSON")->type_name("FILE.json");
+    command.add_option("--stats", o.statistics_file, "Write statistics of the rendering as JSON")
+        ->type_name("FILE.json");
     command.add_option("--plugin", o.plugins, "Load a plugin; may be given several times")->type_name("FILE.so");
     command.add_flag("--skip-unsupported", o.request.skip_unsupported,
                      "Leave out what Lampyris does not simulate, and list it");
     command
         .add_option("--max-memory", o.texts.max_memory, "Most memory for buffers and acceleration structures: 512M, 8G")
         ->type_name("SIZE");
-    command.add_option("--view", o.write.view, "How a PNG shows light")->capture_default_str()->type_name("NAME");
+    command.add_option("--view", o.write.view, "Display transform of a PNG")->capture_default_str()->type_name("NAME");
     command.add_option("--exposure", o.write.exposure, "Exposure of a PNG, in stops")->type_name("EV");
     command.add_option("--replay", o.texts.replay, "Render one sample of one pixel and print it")
         ->type_name("X,Y,PASS");

@@ -55,7 +55,7 @@ def test_what_all_passes_share_is_told(program, source_dir, tmp_path):
     for options, said in [
         (["--integrator", "ppm:photonsperiteration=2000"], "all passes share one eye sample of a pixel"),
         (["--integrator", "ppm:photonsperiteration=2000", "--spp", "4"], "all passes share 4 eye samples of a pixel"),
-        (["--integrator", "photon_map:photons=2000"], "all passes look the same photons up"),
+        (["--integrator", "photon_map:photons=2000"], "all passes use the same photons"),
     ]:
         done = run(*base, *options)
         assert done.returncode == 0, done.stderr

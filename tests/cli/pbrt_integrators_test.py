@@ -48,7 +48,7 @@ def test_pbrts_names_and_parameters_render(program, scene, tmp_path, name):
         assert result["integrator"]["parameters"]["maxdepth"] == 2
     if name == "ambientocclusion":
         assert result["integrator"]["parameters"]["distance"] == 0.5
-    replaced = [note for note in result["notes"] if "renders in the place of" in note]
+    replaced = [note for note in result["notes"] if "renders instead of" in note]
     assert bool(replaced) == (name != ours)
     for note in replaced:
         assert note.startswith(f"{scene}:6:12: ") and f'"{ours}"' in note and f'"{name}"' in note
@@ -138,7 +138,7 @@ def test_path_says_that_it_absorbs_and_how_to_choose(program, scene, tmp_path):
     # volpath simulates absorption, so there is no note about media.
     scene.write_text(tea + SCENE.replace('"path"', '"volpath"'))
     told, image_of_volpath = notes()
-    assert len(told) == 1 and "renders in the place" in told[0] and image_of_volpath == absorbed
+    assert len(told) == 1 and "renders instead of" in told[0] and image_of_volpath == absorbed
     done = run(program, scene, "-o", image, "--set", "integrator.media=some")
     assert done.returncode == 1 and "on or off" in done.stderr
 
@@ -150,4 +150,4 @@ def test_describe_says_what_renders(program, scene):
     )
     result = json.loads(done.stdout)
     assert (result["integrator"], result["rendered_by"]) == ("ambientocclusion", "ao")
-    assert any("renders in the place of" in note for note in result["notes"])
+    assert any("renders instead of" in note for note in result["notes"])

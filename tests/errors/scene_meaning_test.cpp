@@ -188,7 +188,7 @@ TEST(SceneMeaning, FilmsAndCamerasThatPbrtMakesTheBestOf) {
         {film + "\"integer pixelbounds\" [ -2147483648 2147483647 5 20 ]", film + "\"float cropwindow\" [ 0 1 0.25 1 ]",
          86, "reach out of the 40x20 picture"},
         {film + "\"integer pixelbounds\" [ 0 1 0 1 ] \"float cropwindow\" [ 0.25 0.5 0 1 ]",
-         film + "\"float cropwindow\" [ 0.25 0.5 0 1 ]", 117, "the crop window counts"},
+         film + "\"float cropwindow\" [ 0.25 0.5 0 1 ]", 117, "the crop window is used"},
         {perspective + "\"float shutteropen\" 0.75 \"float shutterclose\" 0.5",
          perspective + "\"float shutteropen\" 0.5 \"float shutterclose\" 0.75", 68, "the two are swapped"},
     };

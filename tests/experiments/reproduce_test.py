@@ -80,7 +80,7 @@ def test_a_second_call_makes_nothing(reproduction):
     assert len(sections) == 1
     done = call(command)
     assert done.returncode == 0, done.stdout + done.stderr
-    assert "0 of them still to be made" in done.stdout
+    assert "0 of them still to do" in done.stdout
     assert made_at(folder) == runs
     assert (folder / "index.html").stat().st_mtime_ns == page
     assert {path: path.stat().st_mtime_ns for path in folder.glob("targets/*/*/section.json")} == sections
@@ -95,7 +95,7 @@ def test_a_damaged_result_is_made_again(reproduction):
     done = call(command)
     assert done.returncode == 0, done.stdout + done.stderr
     assert f"{victim}: image.exr is not what was written" in done.stderr
-    assert "1 of them still to be made" in done.stdout
+    assert "1 of them still to do" in done.stdout
     changed = {key for key, date in made_at(folder).items() if date != before[key]}
     assert changed == {victim}
 
@@ -151,12 +151,12 @@ def test_one_line_adds_an_integrator_to_plots_and_page(reproduction, plugin):
         (["frobnicate"], "no target is called 'frobnicate'; there are: scenes"),
         (["--backends", "gpu"], "--backends: 'gpu'; there are: cpu, vulkan"),
         (["--device", "no such device"], "no Vulkan device matches 'no such device'"),
-        (["--set", "robustness"], "TARGET.KEY=VALUE is wanted"),
-        (["--set", "frobnicate.x=1"], "TARGET.KEY=VALUE is wanted"),
+        (["--set", "robustness"], "expected TARGET.KEY=VALUE"),
+        (["--set", "frobnicate.x=1"], "expected TARGET.KEY=VALUE"),
         (["--set", "robustness.times=1"], "robustness has no 'times'; it has: against"),
-        (["--set", "robustness.time_s=soon"], "a value such as 4 is wanted"),
-        (["--set", "additional_noise.passes=4"], "a value such as [4, 16] is wanted"),
-        (["--methods", "/no/such.toml"], "/no/such.toml is not there"),
+        (["--set", "robustness.time_s=soon"], "expected a value such as 4"),
+        (["--set", "additional_noise.passes=4"], "expected a value such as [4, 16]"),
+        (["--methods", "/no/such.toml"], "/no/such.toml does not exist"),
         (["--half"], "unrecognized arguments: --half"),
     ],
 )

@@ -252,7 +252,7 @@ Context::Context(const DeviceOptions& options) try {
     const auto families = physical.getQueueFamilyProperties();
     const auto family = std::find_if(families.begin(), families.end(),
                                      [](const auto& f) { return bool(f.queueFlags & vk::QueueFlagBits::eCompute); });
-    if (family == families.end()) throw MachineError("error: the Vulkan device has no queue that computes");
+    if (family == families.end()) throw MachineError("error: the Vulkan device has no compute queue");
     queue_family = static_cast<uint32_t>(family - families.begin());
     can = capabilities_of(physical, queue_family);
     name = physical.getProperties().deviceName.data();

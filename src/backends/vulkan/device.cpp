@@ -235,9 +235,9 @@ class VulkanDevice final : public Device {
         unfinished_->fill_zero();
         throw UnfinishedError(
             fmt::format("error: kernel {} could not finish a loop within its bound: the driver ended the loop early, "
-                        "or a stack was too small. The image would be wrong. Mesa before 25 ends loops after 65,535 "
-                        "iterations, which long paths, many rays of a sample or many photons within a radius take: "
-                        "a newer driver or --backend cpu does not",
+                        "or a stack was too small. The image would be wrong. Mesa before version 25 ends loops after "
+                        "65,535 iterations; long paths, many rays per sample or many photons within a radius need "
+                        "more. Use a newer driver or --backend cpu",
                         file));
     }
 

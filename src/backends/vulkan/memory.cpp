@@ -79,8 +79,8 @@ KernelBinding VulkanBuffer::binding() const {
     if (!too_large_to_bind_) return {*buffer_, {}, 0};
     const vk::DeviceAddress place = address();
     if (place % kAddressAlignment != 0)
-        throw MachineError(fmt::format("error: Vulkan: {} puts {} at no multiple of {} bytes", context_->name, name_,
-                                       kAddressAlignment));
+        throw MachineError(fmt::format("error: Vulkan: the address that {} gives to {} is not a multiple of {} bytes",
+                                       context_->name, name_, kAddressAlignment));
     return {*buffer_, {}, place};
 }
 

@@ -48,8 +48,8 @@ KernelPipeline::KernelPipeline(std::shared_ptr<Context> context, const std::stri
     const auto constant_bytes = uint32_t(sizeof(KernelRange) + by_address.size() * sizeof(vk::DeviceAddress));
     if (constant_bytes > context_->can.max_push_constants) {
         throw MachineError(fmt::format(
-            "error: Vulkan: kernel {} reads {} buffers of more than {:.0f} MB, and {} takes the addresses of {}", file,
-            by_address.size(), double(context_->can.max_storage_range) / 1e6, context_->name,
+            "error: Vulkan: kernel {} reads {} buffers of more than {:.0f} MB, and {} supports at most {} of them",
+            file, by_address.size(), double(context_->can.max_storage_range) / 1e6, context_->name,
             (context_->can.max_push_constants - sizeof(KernelRange)) / sizeof(vk::DeviceAddress)));
     }
     for (const auto& of_set : entries) set_layouts_.emplace_back(device, vk::DescriptorSetLayoutCreateInfo({}, of_set));

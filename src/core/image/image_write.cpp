@@ -31,9 +31,8 @@ std::string extension_of(const std::string& path) {
                    [](unsigned char c) { return char(std::tolower(c)); });
     const std::vector<std::string>& known = writable_extensions();
     if (std::find(known.begin(), known.end(), extension) == known.end())
-        throw InputError(
-            fmt::format("cannot write '{}': its extension says no format that can be written; these can: {}", path,
-                        list_of(known)));
+        throw InputError(fmt::format("cannot write '{}': its extension is none of the formats that can be written: {}",
+                                     path, list_of(known)));
     return extension;
 }
 

@@ -10,8 +10,9 @@ namespace {
 // By its name on the command line.
 const IntegratorFactory& require_integrator(const std::string& name) {
     if (!integrators().find(name) && find_pbrt_integrator(name))
-        throw InputError(fmt::format("error: unknown integrator \"{}\"; in the place of pbrt-v4's, \"{}\" renders",
-                                     name, rendering_integrator(name)));
+        throw InputError(
+            fmt::format("error: unknown integrator \"{}\"; scenes that name pbrt-v4's are rendered with \"{}\"", name,
+                        rendering_integrator(name)));
     return integrators().require(name);
 }
 

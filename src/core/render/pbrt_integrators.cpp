@@ -42,7 +42,7 @@ constexpr PbrtParameter kOfAo[] = {
 constexpr PbrtParameter kOfSppm[] = {kMaxDepth,
                                      {"photonsperiteration", kInteger, "-1", "photonsperiteration", ""},
                                      {"radius", kFloat, "1", "radius", ""},
-                                     {"seed", kInteger, "6502", "", "the Sampler's seed counts"}};
+                                     {"seed", kInteger, "6502", "", "the Sampler's seed is used"}};
 constexpr PbrtParameter kOfFunction[] = {{"function", kString, "step", "", kNoFunction},
                                          {"filename", kString, "", "", kNoFunction},
                                          {"imagefilename", kString, "", "", kNoFunction},
@@ -51,24 +51,22 @@ constexpr PbrtParameter kOfFunction[] = {{"function", kString, "step", "", kNoFu
 constexpr PbrtIntegrator kIntegrators[] = {
     {"ambientocclusion", "ao", "the share of a white sky that each point sees", false, kOfAo},
     {"bdpt", "path", "paths start at the camera alone: the same image, with other noise", false, kOfBdpt},
-    {"function", "path", "pbrt-v4's measures a sampler's error and makes no picture; this shows the scene", false,
+    {"function", "path", "pbrt-v4's measures a sampler's error and renders no image; this renders the scene", false,
      kOfFunction},
     {"lightpath", "path",
-     "paths start at the camera, not at lights: the same image, but for what is seen directly of specular surfaces, "
-     "which "
-     "pbrt-v4's shows black",
+     "paths start at the camera, not at lights: the same image, except for directly visible specular surfaces, which "
+     "pbrt-v4 shows black",
      true, kDepthAlone},
     {"mlt", "path", "independent samples, not mutations: the same image, with other noise", false, kOfMlt},
     {"path", "path", "", true, kOfPath},
     {"randomwalk", "path",
-     "directions are sampled as materials scatter, and lights are, too: the same image, with less noise, but for "
-     "specular "
-     "surfaces, which pbrt-v4's shows black",
+     "directions are sampled by the materials, and lights are sampled, too: the same image, with less noise, except "
+     "for specular surfaces, which pbrt-v4 shows black",
      true, kDepthAlone},
     {"simplepath", "path", "lights and directions are both sampled: the same image, with less noise", true,
      kOfSimplePath},
     {"simplevolpath", "path",
-     "pbrt-v4's refuses surfaces; here media that absorb are simulated, and those that scatter are refused", false,
+     "pbrt-v4's refuses surfaces; Lampyris simulates media that absorb, and refuses those that scatter", false,
      kDepthAlone},
     {"sppm", "sppm", "", true, kOfSppm},
     {"volpath", "path", "media that absorb are simulated, those that scatter are refused", false, kOfPath},
@@ -150,7 +148,7 @@ std::vector<std::string> integrator_notes(const Entity& integrator, const Scene&
     const std::string place = sources.describe(integrator.type_location);
     const std::string renders = rendering_integrator(integrator.type);
     if (renders != integrator.type)
-        notes.push_back(fmt::format("{}: \"{}\" renders in the place of pbrt-v4's \"{}\": {}", place, renders,
+        notes.push_back(fmt::format("{}: \"{}\" renders instead of pbrt-v4's \"{}\": {}", place, renders,
                                     integrator.type, known->difference));
     const PluginInfo* info = integrators().find_info(renders);
     for (const PbrtParameter& parameter : known->parameters) {
@@ -163,8 +161,8 @@ std::vector<std::string> integrator_notes(const Entity& integrator, const Scene&
     }
     if (known->ignores_media && scene.effects.has(kernel::EFFECT_MEDIUM))
         notes.push_back(
-            fmt::format("{}: light is absorbed in media, which pbrt-v4's \"{}\" passes as if they were empty; \"string "
-                        "media\" \"off\" of the Integrator, or --set integrator.media=off, does so here",
+            fmt::format("{}: light is absorbed in media, which pbrt-v4's \"{}\" treats as empty; \"string media\" "
+                        "\"off\" in the Integrator directive, or --set integrator.media=off, does the same",
                         place, integrator.type));
     return notes;
 }

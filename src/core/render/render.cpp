@@ -26,8 +26,8 @@ void check(const RenderRequest& request) {
     }
     const BudgetLimits& limits = request.limits;
     if (limits.passes == 0u || request.samples_per_pixel == 0u)
-        throw InputError("error: no pass and no sample is rendered: a limit of those is 1 at least");
-    if (limits.seconds && !(*limits.seconds > 0.0)) throw InputError("error: a limit of time must be above 0 seconds");
+        throw InputError("error: a limit of passes or samples must be at least 1");
+    if (limits.seconds && !(*limits.seconds > 0.0)) throw InputError("error: a time limit must be above 0 seconds");
     if (limits.target_error && !(*limits.target_error > 0.0)) throw InputError("error: --target-error must be above 0");
 }
 
@@ -40,7 +40,7 @@ PluginChoice requested_integrator(const RenderRequest& request, BuildOptions& bu
     for (const auto& [key, value] : choice.settings) {
         if (key != "media") continue;
         if (value != "on" && value != "off")
-            throw InputError(fmt::format("error: integrator.media={}: it is on or off", shown(value)));
+            throw InputError(fmt::format("error: integrator.media={}: expected on or off", shown(value)));
         build.media = value == "on";
     }
     std::erase_if(choice.settings, [](const auto& setting) { return setting.first == "media"; });

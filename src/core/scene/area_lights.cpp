@@ -68,7 +68,7 @@ ParameterSpecs diffuse_specs() {
               "radiance that leaves the surface; a spectrum other than rgb is scaled to luminance 1"),
         real("scale", 1.0, "multiplies the radiance").at_least(0),
         real("power", 0.0,
-             "luminous power of each primitive, 0: as L and scale say; as in pbrt-v4, rgb values of L multiply it")
+             "luminous power of each primitive; 0: given by L and scale; as in pbrt-v4, rgb values of L multiply it")
             .at_least(0),
         boolean("twosided", false, "whether the back emits, too"),
         text("filename", "", "an image over uv instead of L"),

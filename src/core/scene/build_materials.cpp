@@ -28,7 +28,7 @@ bool refuse_unsupported(BuildContext& context, const MaterialDescription& materi
         if (material.type != name) continue;
         context.diagnostics.unsupported(material.type_location.known() ? material.type_location : material.location,
                                         fmt::format("material \"{}\"", name),
-                                        "diffuse grey takes its place if skipped");
+                                        "--skip-unsupported renders diffuse grey instead");
         return true;
     }
     return false;

@@ -12,7 +12,7 @@ namespace {
 
 // Media of pbrt-v4 that Lampyris does not simulate; empty space replaces them with --skip-unsupported.
 constexpr const char* kUnsupported[] = {"uniformgrid", "rgbgrid", "cloud", "nanovdb"};
-constexpr const char* kInPlace = "empty space takes its place if skipped";
+constexpr const char* kInPlace = "--skip-unsupported renders empty space instead";
 
 bool is_unsupported(const MediumDescription& medium) {
     return std::find(std::begin(kUnsupported), std::end(kUnsupported), medium.type) != std::end(kUnsupported);

@@ -51,7 +51,7 @@ uint32_t BuildContext::add_transform(const glm::mat4& to, Location where) {
 void BuildContext::refuse_motion(const AnimatedTransform& transform, Location where) {
     if (transform.animated())
         diagnostics.unsupported(where, "motion blur (an animated transform)",
-                                "without it, the transform at the start holds");
+                                "--skip-unsupported uses the transform at the start");
 }
 
 namespace {

@@ -138,7 +138,7 @@ void Parser::set_once(const Token& directive, Entity& entity) {
     if (!read_entity(directive, read)) return;
     if (entity.given())
         diagnostics_->warning(directive.location,
-                              std::string(directive.text) + " is given a second time; this one counts");
+                              std::string(directive.text) + " is given a second time; this one is used");
     entity = std::move(read);
 }
 

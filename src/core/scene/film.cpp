@@ -56,7 +56,7 @@ void read_rectangle(FilmContext& film, std::array<int, 2> size, Rectangle& crop)
     }
     if (window) {
         if (bounds)
-            reader.warning("cropwindow", "both \"cropwindow\" and \"pixelbounds\" are given: the crop window counts");
+            reader.warning("cropwindow", "both \"cropwindow\" and \"pixelbounds\" are given: the crop window is used");
         // Both ends are rounded up.
         const auto pixel = [](float share, int side) {
             return int(std::ceil(float(side) * std::fmin(std::fmax(share, 0.0f), 1.0f)));
@@ -111,12 +111,12 @@ void build_film(FilmContext& film) {
     const std::string sensor = reader.get_string("sensor");
     if (sensor != "cie1931")
         build.diagnostics.unsupported(reader.location("sensor"), fmt::format("sensor \"{}\"", sensor),
-                                      "\"cie1931\", which takes its place if skipped");
+                                      "--skip-unsupported renders with \"cie1931\" instead");
     if (reader.get_float("whitebalance") != 0.0f)
         build.diagnostics.unsupported(reader.location("whitebalance"), "white balance",
-                                      "0, which takes its place if skipped");
+                                      "--skip-unsupported renders with a whitebalance of 0");
     if (build.description.color_space != "srgb")
-        build.scene.notes.push_back(fmt::format("ColorSpace \"{}\": images are written in linear Rec.709 all the same",
+        build.scene.notes.push_back(fmt::format("ColorSpace \"{}\": images are still written in linear Rec.709",
                                                 build.description.color_space));
 }
 
@@ -133,7 +133,7 @@ ParameterSpecs film_specs() {
         integer("yresolution", 720, "height of the picture").between(1, kLargestSide).in("pixels"),
         values("cropwindow", ParameterType::kFloat, "0 1 0 1", "part to render: x0 x1 y0 y1, shares of the picture"),
         values("pixelbounds", ParameterType::kInteger, "all", "part to render: x0 x1 y0 y1").in("pixels"),
-        text("filename", "", "where the image goes unless the command line says otherwise"),
+        text("filename", "", "image file, unless the command line names one"),
         boolean("savefp16", true, "EXR files hold half floats"),
         real("diagonal", 35.0, "of the sensor; has no effect on the cameras here").above(0).in("mm"),
         text("sensor", "cie1931", "spectral response; only cie1931 is known"),

@@ -55,12 +55,12 @@ void TextureBuilder::define(TextureDescription& description) {
         if (description.world_from_texture.animated())
             diagnostics.warning(description.location,
                                 fmt::format("texture \"{}\" does not move", shown(description.name)),
-                                "the transform at the start of the shutter's interval holds");
+                                "the transform at the start of the shutter's interval is used");
         texture.program = (*factory)(context);
         reader.finish("texture");
     } else if (description.type == "ptex") {
         diagnostics.unsupported(description.type_location, "texture \"ptex\"",
-                                "without it, the texture is a grey of 0.5");
+                                "--skip-unsupported uses a grey of 0.5 instead");
     } else {
         const auto [message, hint] = texture_registry().unknown(description.type);
         diagnostics.error(description.type_location, message, hint);

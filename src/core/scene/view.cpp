@@ -34,7 +34,7 @@ void build_entity(BuildContext& context, const Registry<Factory>& registry, Enti
     const bool replaced = entity.given() && is_pbrts(entity.type) && !registry.find(entity.type);
     if (replaced)
         context.diagnostics.unsupported(entity.type_location, fmt::format("{} \"{}\"", registry.kind(), entity.type),
-                                        fmt::format("\"{}\" takes its place if skipped", fallback));
+                                        fmt::format("--skip-unsupported renders with \"{}\" instead", fallback));
     if (!entity.given() || replaced) entity.type = fallback;
     const Factory* factory = registry.find(entity.type);
     if (!factory) {

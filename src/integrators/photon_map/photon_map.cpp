@@ -95,22 +95,20 @@ class PhotonMapRendering {
         const uint64_t bounces = uint64_t(params_.maxdepth) + 1;
         const uint64_t keys = std::max(uint32_t(params_.photons), caustic_paths()) * bounces;
         if (keys > std::numeric_limits<uint32_t>::max())
-            throw InputError(
-                fmt::format("error: photons * (maxdepth + 1) = {} is more than 2^32; take fewer photons, or a smaller "
-                            "maxdepth",
-                            keys));
+            throw InputError(fmt::format(
+                "error: photons * (maxdepth + 1) = {} is more than 2^32; use fewer photons, or a smaller maxdepth",
+                keys));
         if (params_.gather > 0 && params_.direct == kernel::DIRECT_PHOTONS)
             throw InputError(
-                "error: final gathering (gather above 0) finds direct light by sampling lights; direct=photons is for "
-                "the map shown directly");
+                "error: final gathering (gather above 0) samples lights for direct light; direct=photons needs "
+                "gather=0");
         if (params_.nearest > 0 && !finds_nearest(*create_photon_map(session_.photon_map))) {
             std::string others;
             for (const std::string& name : photon_maps().names())
                 if (finds_nearest(*create_photon_map(name))) others += (others.empty() ? "" : ", ") + name;
-            throw InputError(
-                fmt::format("error: the nearest photons (nearest above 0) are found by structures that hand over each "
-                            "photon in range: {}; photon map \"{}\" does not",
-                            others, session_.photon_map));
+            throw InputError(fmt::format(
+                "error: nearest above 0 needs a photon map that passes on every photon in range: {}; \"{}\" does not",
+                others, session_.photon_map));
         }
     }
     static bool finds_nearest(const PhotonMap& map) {
@@ -258,14 +256,14 @@ class PhotonMapIntegrator : public Integrator {
     PhotonMapParams params;
     bool uses_photon_map() const override { return true; }
     std::string unseen_error(uint32_t) const override {
-        return "all passes look the same photons up: their noise and blur are not seen";
+        return "all passes use the same photons, whose noise and blur the estimate does not include";
     }
     void render(RenderSession& session) override { PhotonMapRendering(session, params).render(); }
 };
 
 REGISTER_INTEGRATOR(
     PhotonMapIntegrator, PHOTON_MAP_PARAMS, "photon_map",
-    "Photon mapping: photons traced once, which passes of eye paths look up; k nearest, final gathering.")
+    "Photon mapping: photons are traced once, and looked up by passes of eye paths; k nearest, final gathering.")
 
 }  // namespace
 }  // namespace lampyris

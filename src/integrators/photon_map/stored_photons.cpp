@@ -54,10 +54,10 @@ void StoredPhotons::trace(const BufferHandle& parameters) {
         stored_ = found[kernel::PHOTONS_STORED];
         session_.photons.rays += found[kernel::PHOTON_RAYS];
         if (const uint32_t most = found[kernel::PHOTONS_MOST_KEPT]; !keys_reach(paths_, most))
-            throw InputError(fmt::format(
-                "error: a path leaves {} photons at masked surfaces and others, and {} times as many as there "
-                "are paths ({}) is more than 2^32; take fewer photons",
-                most, most, paths_));
+            throw InputError(
+                fmt::format("error: a path stores up to {} photons, at masked surfaces and others, and {} times the "
+                            "number of paths ({}) is more than 2^32; use fewer photons",
+                            most, most, paths_));
         if (stored_ <= capacity) break;
         capacity = stored_;
     }

@@ -43,7 +43,7 @@ class ProgressivePhotonMapping {
           eye_slices_(session.device, session.film) {
         const uint64_t points = uint64_t(std::max(eye_samples, 1u)) * branches_ * pixels_;
         if (points > std::numeric_limits<uint32_t>::max())
-            throw InputError(fmt::format("error: {} hit points are more than 2^32; take fewer --spp", points));
+            throw InputError(fmt::format("error: {} hit points are more than 2^32; use a smaller --spp", points));
         paths_ = params.photonsperiteration > 0 ? uint32_t(params.photonsperiteration)
                                                 : session.scene.width() * session.scene.height();
         capacity_ = params.store > 0 ? uint32_t(params.store)
@@ -92,8 +92,8 @@ class ProgressivePhotonMapping {
     void render() {
         if (session_.next_pass() > 0 && (fixed_ || params_.schedule == kernel::SCHEDULE_SHARED))
             throw InputError(
-                "error: with fixed hit points or schedule=shared a pass depends on those before it, and cannot be "
-                "rendered alone; take sppm with schedule=memoryless");
+                "error: with fixed hit points or schedule=shared, a pass depends on the passes before it and cannot be "
+                "rendered alone; use sppm with schedule=memoryless");
         get_ready();
         while (const uint32_t count = session_.next_passes()) {
             for (uint32_t i = 0; i < count; ++i) one_pass(session_.next_pass() + i);

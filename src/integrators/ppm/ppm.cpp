@@ -17,8 +17,8 @@ class Ppm : public Integrator {
         constexpr uint32_t kEnough = 16;  // then the error within the pixel is usually small beside the rest
         if (eye_samples >= kEnough) return {};
         return fmt::format(
-            "all passes share {} of a pixel: edges and reflections between are not seen, nor what else of "
-            "masks, mixes and lobes their ways might have met",
+            "all passes share {} of a pixel: the estimate misses edges and reflections between them, and other choices "
+            "of masks, mixes and lobes along their paths",
             eye_samples > 1 ? fmt::format("{} eye samples", eye_samples) : "one eye sample");
     }
     void render(RenderSession& session) override {
@@ -27,7 +27,7 @@ class Ppm : public Integrator {
 };
 
 REGISTER_INTEGRATOR(Ppm, PROGRESSIVE_PARAMS, "ppm",
-                    "Progressive photon mapping: hit points that stay where the first pass put them.")
+                    "Progressive photon mapping: all passes share the hit points of the first pass.")
 
 }  // namespace
 }  // namespace lampyris

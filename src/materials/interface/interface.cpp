@@ -11,7 +11,8 @@ void build(MaterialContext& context) {
     context.ask(kernel::EFFECT_INTERFACE);
 }
 
-const RegisterMaterial interface_material("interface", "Nothing: rays pass. Bounds a medium.", {}, build);
+const RegisterMaterial interface_material("interface", "The boundary of a medium: rays pass through it unchanged.", {},
+                                          build);
 
 }  // namespace
 

@@ -80,7 +80,7 @@ ParameterSpec remap_spec() {
 
 ParameterSpec eta_spec(const std::string& name, const std::string& of_what) {
     ParameterSpec spec =
-        real(name, 1.5, "index of refraction of " + of_what + "; a spectrum asks for dispersion").above(0);
+        real(name, 1.5, "index of refraction of " + of_what + "; a spectrum would need dispersion").above(0);
     spec.spectral = true;
     return spec;
 }
@@ -103,7 +103,7 @@ float read_eta(MaterialContext& context, std::string_view name) {
     if (*low != *high)
         context.build.diagnostics.unsupported(
             context.reader.location(name), "dispersion (an index of refraction that depends on the wavelength)",
-            fmt::format("a constant, \"float {}\" {:.4f}, takes its place if skipped", name, eta));
+            fmt::format("--skip-unsupported uses a constant, \"float {}\" {:.4f}, instead", name, eta));
     if (eta > 0.0f) return eta;
     context.reader.error(name, fmt::format("\"{}\" is {:g} at {} nm", name, eta, kSodiumLine), "it must be above 0");
     return fallback;
@@ -127,7 +127,7 @@ void add_conductor(ParameterSpecs& specs, const std::string& prefix) {
         value(prefix + "eta", ParameterType::kSpectrum, "metal-Cu-eta", "real part of the index of refraction")
             .textured());
     specs.push_back(value(prefix + "k", ParameterType::kSpectrum, "metal-Cu-k", "its imaginary part").textured());
-    specs.push_back(value("reflectance", ParameterType::kSpectrum, "as eta and k say",
+    specs.push_back(value("reflectance", ParameterType::kSpectrum, "from eta and k",
                           "reflectance at normal incidence, instead of eta and k")
                         .textured());
     specs.push_back(boolean("energycompensation", false,

@@ -4,9 +4,10 @@
 
 #include "core/kernel/params.h"
 
-#define KD_TREE_PARAMS(P)    \
-    P(uint, leaf, 16, 4, 64, \
-      "photons of a leaf: nodes with no more are not split; what a round leaves with up to twice as many stays")
+#define KD_TREE_PARAMS(P)                                                                                           \
+    P(uint, leaf, 16, 4, 64,                                                                                        \
+      "photons per leaf: nodes with at most this many are leaves, and so are cells of a round with up to twice as " \
+      "many")
 PARAMS(KdTreeParams, KD_TREE_PARAMS)
 
 #endif

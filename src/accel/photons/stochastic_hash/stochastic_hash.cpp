@@ -85,7 +85,7 @@ class StochasticHash : public PhotonMap {
 };
 
 REGISTER_PHOTON_MAP(StochasticHash, STOCHASTIC_HASH_PARAMS, "stochastic_hash",
-                    "A hash table that keeps one photon a bucket, which stands for all that fell into it.")
+                    "A hash table that keeps one photon per bucket, which represents all that fell into it.")
 
 }  // namespace
 }  // namespace lampyris

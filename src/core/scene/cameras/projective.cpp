@@ -25,7 +25,7 @@ std::array<float, 4> screen_window(CameraContext& camera) {
         if (numbers && numbers->size() != 4) {
             camera.reader.warning(
                 "screenwindow",
-                fmt::format("\"screenwindow\" has {} numbers, not 4: its default holds, as in pbrt-v4",
+                fmt::format("\"screenwindow\" has {} numbers, not 4: its default is used, as in pbrt-v4",
                             numbers->size()),
                 "xmin xmax ymin ymax");
         } else if (!numbers || (*numbers)[0] == (*numbers)[1] || (*numbers)[2] == (*numbers)[3] ||

@@ -48,12 +48,12 @@ void build_sinc(FilterContext& context) {
 }
 
 ParameterSpecs with_radius(double radius, ParameterSpecs specs = {}) {
-    specs.push_back(real("xradius", radius, "reach to either side").above(0).between(0, 64).in("pixels"));
-    specs.push_back(real("yradius", radius, "reach up and down").above(0).between(0, 64).in("pixels"));
+    specs.push_back(real("xradius", radius, "horizontal radius").above(0).between(0, 64).in("pixels"));
+    specs.push_back(real("yradius", radius, "vertical radius").above(0).between(0, 64).in("pixels"));
     return specs;
 }
 
-const RegisterFilter box("box", "All of the pixel alike.", with_radius(0.5), build_box);
+const RegisterFilter box("box", "Weights all points alike.", with_radius(0.5), build_box);
 const RegisterFilter triangle("triangle", "Falls off linearly.", with_radius(2.0), build_triangle);
 const RegisterFilter gaussian("gaussian", "A Gaussian, lowered to reach zero at the radius.",
                               with_radius(1.5, {real("sigma", 0.5, "standard deviation").above(0).in("pixels")}),

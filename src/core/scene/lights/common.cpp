@@ -39,7 +39,7 @@ ParameterSpec emission_spec(const std::string& name, const std::string& of_what)
 }
 ParameterSpec scale_spec() { return real("scale", 1.0, "multiplies it").at_least(0); }
 ParameterSpec power_spec() {
-    return real("power", 0.0, "luminous power, 0: as the other parameters say; as in pbrt-v4, rgb values multiply it")
+    return real("power", 0.0, "luminous power; 0: given by the other parameters; as in pbrt-v4, rgb values multiply it")
         .at_least(0);
 }
 

@@ -26,7 +26,7 @@ void build(LightContext& context) {
 const RegisterLight distant(
     "distant", "Parallel light from one direction.",
     {emission_spec("L", "irradiance across the light's direction"), scale_spec(),
-     real("illuminance", 0.0, "across the light's direction, 0: as the other parameters say").at_least(0),
+     real("illuminance", 0.0, "across the light's direction; 0: given by the other parameters").at_least(0),
      value("from", ParameterType::kPoint3, "0 0 0", "the light comes from this side"),
      value("to", ParameterType::kPoint3, "0 0 1", "and goes to this one")},
     build);

@@ -79,7 +79,7 @@ void build_goniometric(LightContext& context) {
 }
 
 const RegisterLight projection(
-    "projection", "Throws a picture from a point, like a slide projector.",
+    "projection", "Projects an image from a point, like a slide projector.",
     {text("filename", "", "the picture").needed(), scale_spec(), power_spec(),
      real("fov", 90.0, "field of view across the shorter side").above(0).between(0, 179.9).in("degrees")},
     build_projection);

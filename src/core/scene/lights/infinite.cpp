@@ -87,7 +87,7 @@ void build(LightContext& context) {
     const std::string filename = reader.get_string("filename");
     if (reader.find("portal"))
         context.build.diagnostics.unsupported(reader.location("portal"), "portals of infinite lights",
-                                              "without it, all of the sky is sampled");
+                                              "--skip-unsupported samples all of the sky");
     if (filename.empty()) {
         build_constant(context, scale);
         return;
@@ -99,7 +99,8 @@ void build(LightContext& context) {
 const RegisterLight infinite(
     "infinite", "Light from all around: constant, or an equal-area octahedral image.",
     {emission_spec("L", "radiance"), scale_spec(),
-     real("illuminance", 0.0, "on a surface that faces +z of light space, 0: as the other parameters say").at_least(0),
+     real("illuminance", 0.0, "on a surface that faces +z of light space; 0: given by the other parameters")
+         .at_least(0),
      text("filename", "", "an image of the sky instead of L; the pole is +z of light space"),
      values("portal", ParameterType::kPoint3, "none", "the window through which light comes (not supported)")},
     build);

@@ -53,9 +53,10 @@ ParameterSpecs spot_specs() {
     ParameterSpecs specs = point_specs();
     specs.push_back(value("to", ParameterType::kPoint3, "0 0 1", "a point on the axis").in("scene units"));
     specs.push_back(
-        real("coneangle", 30.0, "from the axis to where no light falls").above(0).between(0, 180).in("degrees"));
-    specs.push_back(
-        real("conedeltaangle", 5.0, "over which the light falls off, inside of that").between(0, 180).in("degrees"));
+        real("coneangle", 30.0, "angle from the axis at which the light ends").above(0).between(0, 180).in("degrees"));
+    specs.push_back(real("conedeltaangle", 5.0, "angle over which the light falls off, inside of the cone")
+                        .between(0, 180)
+                        .in("degrees"));
     return specs;
 }
 

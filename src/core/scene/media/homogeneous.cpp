@@ -40,7 +40,7 @@ ParameterSpecs specs() {
             value("sigma_s", ParameterType::kSpectrum, "1", "scattering: only 0 is supported").in("1 / scene unit"),
             real("scale", 1.0, "multiplies both").at_least(0),
             text("preset", "", "pbrt-v4's measured media, by name; they scatter: not supported"),
-            real("g", 0.0, "asymmetry of the scattering, of no account without it").between(-1, 1),
+            real("g", 0.0, "asymmetry of the scattering; without scattering, it has no effect").between(-1, 1),
             value("Le", ParameterType::kSpectrum, "0", "emission: only 0 is supported"),
             real("Lescale", 1.0, "multiplies it").at_least(0)};
 }

@@ -35,7 +35,7 @@ void build(ShapeContext& context) {
     const SubdividedMesh limit = loop_subdivide(std::move(positions), std::move(faces), levels);
     if (!limit.error.empty()) {
         reader.error("indices", fmt::format("the mesh cannot be subdivided: {}", limit.error),
-                     "each edge belongs to at most two faces that run alike");
+                     "each edge belongs to at most two faces of the same orientation");
         return;
     }
     mesh.positions.clear(), mesh.indices.clear();

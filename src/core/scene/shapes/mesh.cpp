@@ -126,7 +126,7 @@ bool check_mesh(ShapeContext& context, const Mesh& mesh) {
     if (vertices >= (size_t(1) << 31) ||
         context.build.scene.indices.size() + mesh.indices.size() >= (size_t(1) << 32) ||
         context.build.scene.positions.size() / 3 + vertices >= (size_t(1) << 32) / 3)
-        return fail("P", fmt::format("the mesh of {} vertices does not fit beside the others", vertices),
+        return fail("P", fmt::format("the mesh of {} vertices does not fit together with the others", vertices),
                     "kernels count to 2^32 coordinates");
     for (const float value : mesh.positions)
         if (!std::isfinite(value)) return fail("P", "a coordinate of the mesh is not finite", "");
@@ -169,7 +169,7 @@ void warn_of_unusable(ShapeContext& context, const Mesh& mesh, const std::vector
         fmt::format("{} of the mesh's {} {} are not finite, the first is that of vertex {}: {} of its {} {} {}",
                     vertices, marks.size(), mark == kNormal ? "normals" : "texture coordinates", first, affected, faces,
                     mesh.corners == 3 ? "triangles" : "patches",
-                    mark == kNormal ? "are shaded flat" : "have those of a mesh that gives none"));
+                    mark == kNormal ? "are shaded flat" : "use default texture coordinates"));
 }
 
 // The faces with exactly these marks, as a separate mesh without the attributes that cannot be used.

@@ -5,7 +5,7 @@ namespace {
 
 const RegisterTexture registration(
     "bilerp", "Four values at the corners of the unit square of (s, t), and what lies between them.",
-    with_mapping({value("v00", ParameterType::kSpectrum, "0", "at (0, 0); of a float texture a float"),
+    with_mapping({value("v00", ParameterType::kSpectrum, "0", "at (0, 0); in a float texture, a float"),
                   value("v01", ParameterType::kSpectrum, "1", "at (0, 1)"),
                   value("v10", ParameterType::kSpectrum, "0", "at (1, 0)"),
                   value("v11", ParameterType::kSpectrum, "1", "at (1, 1)")}),

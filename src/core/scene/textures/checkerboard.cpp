@@ -16,10 +16,10 @@ TextureProgram make(TextureContext& context) {
 }
 
 const RegisterTexture registration(
-    "checkerboard", "Two textures by turns, in squares of (s, t) or cubes of space, whose sides are 1.",
+    "checkerboard", "Two textures that alternate in unit squares of (s, t) or unit cubes of space.",
     with_mapping({integer("dimension", 2, "2: squares of the mapping; 3: cubes in the texture's space").between(2, 3),
                   value("tex1", ParameterType::kSpectrum, "1",
-                        "in cells whose coordinates add up to an even number; of a float texture a float")
+                        "in cells whose coordinates add up to an even number; in a float texture, a float")
                       .textured(),
                   value("tex2", ParameterType::kSpectrum, "0", "in the others").textured()}),
     make);

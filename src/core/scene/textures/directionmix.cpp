@@ -25,10 +25,12 @@ TextureProgram make(TextureContext& context) {
 
 const RegisterTexture registration(
     "directionmix",
-    "tex1 where the surface faces a direction, or away from it; tex2 where it lies across: the share is |cos|.",
-    {value("tex1", ParameterType::kSpectrum, "0", "of surfaces that face the direction; of a float texture a float")
+    "tex1 where the surface faces a direction, or away from it; tex2 where the surface is parallel to it: the weight "
+    "of "
+    "tex1 is |cos|.",
+    {value("tex1", ParameterType::kSpectrum, "0", "of surfaces that face the direction; in a float texture, a float")
          .textured(),
-     value("tex2", ParameterType::kSpectrum, "1", "of surfaces that lie along it").textured(),
+     value("tex2", ParameterType::kSpectrum, "1", "of surfaces that are parallel to it").textured(),
      value("dir", ParameterType::kVector3, "0 1 0", "the direction")},
     make);
 

@@ -7,7 +7,7 @@ namespace {
 // there; here the names mean what pbrt's documentation says.
 const RegisterTexture registration(
     "dots", "Dots of one texture, scattered at random over half of the unit cells of (s, t), on another.",
-    with_mapping({value("inside", ParameterType::kSpectrum, "1", "in the dots; of a float texture a float").textured(),
+    with_mapping({value("inside", ParameterType::kSpectrum, "1", "in the dots; in a float texture, a float").textured(),
                   value("outside", ParameterType::kSpectrum, "0", "between them").textured()}),
     [](TextureContext& context) {
         kernel::TextureOp op{};

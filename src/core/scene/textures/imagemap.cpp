@@ -59,16 +59,15 @@ TextureProgram make(TextureContext& context) {
 
 const RegisterTexture registration(
     "imagemap", "An image from a file, of any format that OpenImageIO reads; (s, t) = (0, 0) is its lower left corner.",
-    with_mapping(
-        {text("filename", "", "the file, relative to the scene's folder").needed(),
-         text("wrap", "repeat", "what is beyond the image's edges").one_of(kWraps),
-         text("filter", "bilinear", "between texels; trilinear and EWA are sampled as bilinear")
-             .one_of({"point", "bilinear", "trilinear", "EWA"}),
-         real("maxanisotropy", 8.0, "of filter EWA, without effect"),
-         text("encoding", "",
-              "of integer formats: sRGB, linear, or \"gamma\" and a number; what the file says where it is left out"),
-         real("scale", 1.0, "factor of the image's values"),
-         boolean("invert", false, "show one minus the scaled value")}),
+    with_mapping({text("filename", "", "the file, relative to the scene's folder").needed(),
+                  text("wrap", "repeat", "values beyond the image's edges").one_of(kWraps),
+                  text("filter", "bilinear", "between texels; trilinear and EWA are sampled as bilinear")
+                      .one_of({"point", "bilinear", "trilinear", "EWA"}),
+                  real("maxanisotropy", 8.0, "of filter EWA, without effect"),
+                  text("encoding", "",
+                       "of integer formats: sRGB, linear, or \"gamma\" and a number; default: as the file says"),
+                  real("scale", 1.0, "factor of the image's values"),
+                  boolean("invert", false, "show one minus the scaled value")}),
     make);
 
 }  // namespace

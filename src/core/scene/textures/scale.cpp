@@ -5,7 +5,7 @@ namespace {
 
 const RegisterTexture registration(
     "scale", "The product of two textures.",
-    {value("tex", ParameterType::kSpectrum, "1", "the texture to be scaled; of a float texture a float").textured(),
+    {value("tex", ParameterType::kSpectrum, "1", "the texture to be scaled; in a float texture, a float").textured(),
      real("scale", 1.0, "its factor").textured()},
     [](TextureContext& context) {
         kernel::TextureOp op{};
