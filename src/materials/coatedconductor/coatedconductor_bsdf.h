@@ -4,7 +4,7 @@
 
 #include "materials/shared/coat.h"
 
-// The record has n + ik of the bare metal: under the coat both are relative to the coat's index.
+// The record has n + ik of the bare metal; under the coat, both are divided by the coat's index.
 FN Bsdf coatedconductor_make(IN(MaterialRecord) m) {
     Bsdf b =
         coat_make(m, roughness_alpha(m.coat_roughness_u, m.coat_roughness_v, (m.flags & MATERIAL_REMAP_COAT) != 0u));

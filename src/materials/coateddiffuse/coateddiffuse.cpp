@@ -10,7 +10,7 @@ void build(MaterialContext& context) {
     record.kind = kernel::MATERIAL_COATEDDIFFUSE;
     set_color0(context, read_color(context.build, context.reader, "reflectance", SpectrumUse::kAlbedo, Spectrum(0.5f)));
     read_base_roughness(context, "");
-    record.roughest_alpha = kRoughestDiffuse;  // the base
+    record.roughest_alpha = kRoughestDiffuse;  // because of the base
     read_coat(context, "eta");
     read_surface_detail(context);
 }

@@ -16,7 +16,8 @@ FN bool coateddiffuse_is_specular(IN(Bsdf) b) { return false; }
 FN bool coateddiffuse_chooses_lobe(IN(Bsdf) b) { return true; }
 FN bool coateddiffuse_transmits(IN(Bsdf) b) { return false; }
 
-// The coat's own reflection, and the base seen through it with a diffuse inner reflection of R_i = 1 - (1 - R) / eta^2.
+// The coat's reflection, plus the base seen through the coat, with the diffuse inner reflectance R_i = 1 - (1 - R) /
+// eta^2.
 FN Spectrum coateddiffuse_albedo(IN(Bsdf) b) {
     float r = fresnel_dielectric(1.0f, b.eta);
     Spectrum base = b.color0;

@@ -1,4 +1,4 @@
-// Material "conductor": a metal, by complex Fresnel terms and GGX microfacets.
+// Material "conductor": a metal, with complex Fresnel terms and GGX microfacets.
 #include "materials/shared/host.h"
 
 namespace lampyris {

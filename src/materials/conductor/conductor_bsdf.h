@@ -1,11 +1,11 @@
-// Material "conductor": a metal by complex Fresnel reflection, specular or by GGX microfacets (single scattering; Cook and
-// Torrance's form, pbrt, 4th edition, section 9.6.5). Both sides of the surface reflect alike.
+// Material "conductor": a metal with complex Fresnel reflection, specular or with GGX microfacets (single scattering;
+// Cook and Torrance's form, pbrt, 4th edition, section 9.6.5). Both sides of the surface reflect equally.
 #ifndef LAMPYRIS_MATERIALS_CONDUCTOR
 #define LAMPYRIS_MATERIALS_CONDUCTOR
 
 // ---- The lobe, which is also the base of coatedconductor -------------------------------------------------------------
 
-// D F G2 / (4 cos_o cos_i), for wo.z and wi.z > 0, at the microfacet normal m.
+// D F G2 / (4 cos_o cos_i), for wo.z and wi.z > 0, at the microfacet normal m with density d.
 FN Spectrum conductor_lobe_value(Spectrum n, Spectrum k, vec2 alpha, uint flags, vec3 wo, vec3 wi, vec3 m, float d) {
     Spectrum f = fresnel_conductor(max(dot3(wo, m), 0.0f), n, k) * (d * ggx_visibility(wo, wi, alpha));
     if ((flags & MATERIAL_ENERGY_COMPENSATION) != 0u) {
@@ -21,7 +21,7 @@ FN Spectrum conductor_lobe_eval(Spectrum n, Spectrum k, vec2 alpha, uint flags, 
     vec3 i = wo.z < 0.0f ? -wi : wi;
     vec3 m = unit(o + i);
     float d = ggx_d(m, alpha);
-    // Visible normals' density over the Jacobian 4 dot(wo, m) of the reflection.
+    // The density of visible normals over the Jacobian 4 dot(wo, m) of the reflection.
     pdf = 0.25f * ggx_visible_scale(o, alpha) * d;
     return conductor_lobe_value(n, k, alpha, flags, o, i, m, d);
 }

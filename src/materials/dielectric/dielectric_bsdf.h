@@ -1,26 +1,27 @@
-// Material "dielectric": glass by reflection and refraction, specular or by GGX microfacets (Walter et al. 2007; pbrt, 4th edition,
-// sections 9.5 and 9.7).
+// Material "dielectric": glass with reflection and refraction, specular or with GGX microfacets (Walter et al. 2007;
+// pbrt, 4th edition, sections 9.5 and 9.7).
 //
-// Both sides work alike: everything is turned so that wo.z > 0, and eta is then that of the side of -z over wo's side.
-// `lobes` restricts sampling (and its density) to LOBE_REFLECTION or LOBE_TRANSMISSION; LOBE_BOTH_SIDES asks for both.
+// Both sides are treated equally: directions are flipped so that wo.z > 0, and eta is then the index on the -z side
+// over that on wo's side. `lobes` restricts sampling (and its density) to LOBE_REFLECTION or LOBE_TRANSMISSION;
+// LOBE_BOTH_SIDES allows both.
 #ifndef LAMPYRIS_MATERIALS_DIELECTRIC
 #define LAMPYRIS_MATERIALS_DIELECTRIC
 
 // ---- The lobe, which is also the interface of coats ------------------------------------------------------------------
 
-// A surface is specular where it is smooth, and where the index hardly changes: microfacets then do not refract.
+// A surface is specular if it is smooth, or if the index hardly changes, because microfacets then do not refract.
 FN bool dielectric_lobe_is_specular(vec2 alpha, float eta) { return ggx_is_smooth(alpha) || abs(eta - 1.0f) < 1e-4f; }
 
-// Probability of reflection under `lobes`, from Fresnel's reflectance r; negative where nothing can be chosen.
+// Probability of reflection under `lobes`, for the Fresnel reflectance r; negative if there is nothing to choose.
 FN float dielectric_lobe_choice(float r, uint lobes) {
     if (lobes == LOBE_BOTH_SIDES) return r;
     if (lobes == LOBE_REFLECTION) return r > 0.0f ? 1.0f : -1.0f;
     return r < 1.0f ? 0.0f : -1.0f;
 }
 
-// Value and density of the rough refraction from o to i through the normal m, for o.z > 0 > i.z; do_m = dot(o, m) > 0 > di_m.
-// Walter et al. 2007, equations 17 and 21. `length2` is |o + eta i|^2 = (do_m + eta di_m)^2. Radiance is compressed into
-// the denser side: 1/eta^2 (there cancelling eta^2), importance is not.
+// Value and density of the rough refraction from o to i through the normal m, for o.z > 0 > i.z; do_m = dot(o, m) > 0 >
+// di_m. Walter et al. 2007, equations 17 and 21. `length2` is |o + eta i|^2 = (do_m + eta di_m)^2. Radiance is scaled
+// by 1/eta^2, which cancels the equation's eta^2; importance is not.
 FN float rough_refraction_value(vec2 alpha, float eta, vec3 o, vec3 i, float d, float do_m, float di_m, float length2,
                                 uint transport) {
     float value = 4.0f * d * ggx_visibility(o, i, alpha) * abs(do_m * di_m) / length2;
@@ -47,7 +48,8 @@ FN Spectrum dielectric_lobe_eval(vec2 alpha, float eta_up, vec3 wo, vec3 wi, uin
     float di_m = dot3(i, m);
     // Microfacets seen from behind scatter nothing.
     if (!(do_m > 0.0f) || (di_m > 0.0f) != reflected) return Spectrum(0.0f);
-    // The refracted cosine is known: near total reflection it is more accurate than what follows from the other.
+    // Uses the known refracted cosine: near total reflection it is more accurate than one computed from the other
+    // cosine.
     float r = reflected ? fresnel_dielectric(do_m, eta) : fresnel_of_cosines(do_m, -di_m, eta);
     float choice = dielectric_lobe_choice(r, lobes);
     float d = ggx_d(m, alpha);

@@ -1,4 +1,4 @@
-// Material "diffusetransmission": paper, leaves.
+// Material "diffusetransmission": for paper and leaves.
 #include "materials/shared/host.h"
 
 namespace lampyris {

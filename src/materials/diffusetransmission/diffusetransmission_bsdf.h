@@ -15,7 +15,7 @@ FN bool diffusetransmission_transmits(IN(Bsdf) b) { return true; }
 FN Spectrum diffusetransmission_albedo(IN(Bsdf) b) { return bounded_share(b.color0 + b.color1); }
 FN uint diffusetransmission_visible_action(IN(Bsdf) b, float roughness) { return VISIBLE_GATHER; }
 
-// Probability of reflection rather than transmission: by the larger channel of each, as pbrt.
+// Probability of reflection instead of transmission, in proportion to the largest channel of each, as in pbrt.
 FN float diffusetransmission_reflects(IN(Bsdf) b) {
     float r = max_value(b.color0);
     float t = max_value(b.color1);

@@ -1,4 +1,4 @@
-// Material "mix": each point shows one of two materials, by chance.
+// Material "mix": each point has one of two materials, by random choice.
 #include "materials/shared/host.h"
 
 #include <fmt/format.h>
@@ -9,16 +9,16 @@ namespace lampyris {
 
 namespace {
 
-// Less than MIX_DEPTH (mix_bsdf.h), which is how many kernels look at.
+// Less than MIX_DEPTH (mix_bsdf.h), the number of steps that kernels take.
 constexpr uint32_t kMostMixes = 63;
 
-// How many mixes a look-up passes from a material on.
+// The maximum number of nested mixes from a material on.
 uint32_t mix_depth(const BuildContext& build, uint32_t material) {
     const auto found = build.mix_depths.find(material);
     return found == build.mix_depths.end() ? 0u : found->second;
 }
 
-// How rough the roughest of its materials gets, of those that it shows at all.
+// The roughest alpha of its materials, without those that it never chooses.
 float roughest_of_both(const kernel::MaterialRecord& mix, const std::vector<kernel::MaterialRecord>& materials) {
     const bool constant = mix.amount_texture == kNone;
     float roughest = kNeverGathers;
@@ -43,7 +43,7 @@ void build(MaterialContext& context) {
     record.first_material = record.second_material = 0;
     uint32_t depth = 1;
     const Parameter* parameter = context.reader.find("materials");
-    if (!parameter) return;  // told as a missing parameter
+    if (!parameter) return;  // reported as a missing parameter
     const auto* names = std::get_if<std::vector<std::string>>(&parameter->values);
     if (!names || names->size() != 2) {
         context.reader.error("materials", fmt::format("\"mix\" of {} materials", names ? names->size() : 0),
@@ -70,7 +70,7 @@ void build(MaterialContext& context) {
             context.reader.error("materials", fmt::format("the mix contains itself, through \"{}\"", name));
             continue;
         }
-        // Kernels follow a mix that deep; this also bounds the recursion here.
+        // Kernels follow mixes to this depth; the limit also bounds the recursion here.
         if (context.path.size() > kMostMixes) {
             refuse_depth(context);
             return;
@@ -84,7 +84,7 @@ void build(MaterialContext& context) {
         depth = 0;
     }
     if (!build.diagnostics.has_errors()) record.roughest_alpha = roughest_of_both(record, build.scene.materials);
-    // Materials are appended when they are finished, so this one's index is the next.
+    // Materials are appended when they are finished, so the next index is this material's.
     build.mix_depths[uint32_t(build.scene.materials.size())] = depth;
 }
 

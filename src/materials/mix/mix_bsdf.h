@@ -1,12 +1,12 @@
-// Material "mix": each point shows one of two materials, by chance.
+// Material "mix": each point has one of two materials, by random choice.
 #ifndef LAMPYRIS_MATERIALS_MIX
 #define LAMPYRIS_MATERIALS_MIX
 
-// The deepest nesting of mix materials; the host refuses more.
+// Maximum number of steps through nested mixes; the host rejects deeper nesting.
 CONST uint MIX_DEPTH = 64u;
 
-// In [0, 1): a hash of where a surface is seen from where, so that the choice needs no random number and is the same for all
-// who ask (pbrt, 4th edition, section 10.5.1); of the mix, too, so that nested mixes choose independently.
+// In [0, 1): a hash of position and direction, so that the choice needs no random number and is the same at every
+// evaluation (pbrt, 4th edition, section 10.5.1). The mix is hashed, too, so that nested mixes choose independently.
 FN float mix_choice(vec3 position, vec3 wo, uint material) {
     uint h = hash32(material);
     h = hash_combine(h, floatBitsToUint(position.x));
@@ -18,7 +18,7 @@ FN float mix_choice(vec3 position, vec3 wo, uint material) {
     return unit_float(h);
 }
 
-// Replaces a mix in s.material by the material that it shows here. wo: world space.
+// Replaces a mix in s.material by the material that it chooses at this point. wo is in world space.
 RARE_FN void mix_resolve(INOUT(Surface) s, vec3 wo) {
     for (uint i = 0u; i < MIX_DEPTH; ++i) {
         if (materials[s.material].kind != MATERIAL_MIX) return;

@@ -1,9 +1,11 @@
-// The coated diffuse material without its random walk, where the walk's sum is known: a smooth coat with nothing but
-// absorption under it. What the diffuse base scatters up, the coat's inner side reflects back in the share
+// The coated diffuse material without a random walk, if the walk's sum has a closed form: for a smooth coat with only
+// absorption between coat and base. Of the light that the diffuse base scatters up, the coat's inner side reflects back
+// the fraction
 //   A = 2 int_0^1 F(mu) T(mu)^2 mu dmu,   T(mu) = exp(-thickness / mu),
-// whatever came before, so that the walk's events at the base are a geometric series:
+// independently of earlier events. So the walk's events at the base are a geometric series:
 //   f = (rho / pi) t(wo) t(wi) / eta^2 * sum_{k < K} (rho A)^k,   t(w) = (1 - F(w)) T(w inside),
-// with K the number of times that max_depth lets the walk reach the base. The expectation is the walk's, without its noise.
+// where K is the number of times that the walk reaches the base within max_depth. The value is the walk's expectation,
+// without its noise.
 #ifndef LAMPYRIS_MATERIALS_CLEAR_COAT
 #define LAMPYRIS_MATERIALS_CLEAR_COAT
 
@@ -11,18 +13,19 @@
 
 FN bool clear_coat_applies(IN(Bsdf) b) { return ggx_is_smooth(b.alpha) && is_black(b.albedo) && b.eta > 1.0001f; }
 
-// The integrand of A where reflection is total.
+// The integrand of A for total reflection.
 FN float clear_coat_total_term(float mu, float thickness) {
     return 2.0f * mu * exp_of(-min(2.0f * thickness / mu, 100.0f));
 }
 
-// The rest, as an integral over the cosine outside: eta^2 mu dmu = mu_o dmu_o.
+// The integrand of A otherwise, for integration over the cosine outside: eta^2 mu dmu = mu_o dmu_o.
 FN float clear_coat_partial_term(float mu_o, float eta, float thickness) {
     float mu = sqrt(refracted_cosine_squared(mu_o, eta));
     return 2.0f * mu_o / (eta * eta) * fresnel_of_cosines(mu_o, mu, eta) * exp_of(-min(2.0f * thickness / mu, 100.0f));
 }
 
-// A for eta > 1, by Gauss-Legendre rules of 6 and 5 points on the two sides of the critical angle; off by less than 3e-4.
+// A for eta > 1, by Gauss-Legendre rules of 6 and 5 points on the two sides of the critical angle; the error is below
+// 3e-4.
 RARE_FN float clear_coat_inner_reflectance(float eta, float thickness) {
     float critical = sqrt((eta - 1.0f) * (eta + 1.0f)) / eta;
     float sum = 0.0f;
@@ -46,7 +49,7 @@ FN float geometric_sum(float x, uint count) {
     return (1.0f - pow_of(x, float(count))) / (1.0f - x);
 }
 
-// Share of light along w that crosses the coat's surface and its medium, once.
+// Fraction of the light along w that crosses the coat's surface and its medium once.
 FN float clear_coat_transmission(IN(Bsdf) b, float cos_theta) {
     float mu = sqrt(refracted_cosine_squared(cos_theta, b.eta));
     return (1.0f - fresnel_of_cosines(cos_theta, mu, b.eta)) * exp_of(-min(b.thickness / mu, 100.0f));
@@ -69,7 +72,7 @@ FN Spectrum clear_coat_eval(IN(Bsdf) b, vec3 wo, vec3 wi, OUT(float) pdf) {
     return clear_coat_value(b, abs(wo.z), abs(wi.z));
 }
 
-// The coat's own reflection, or the base's light by a cosine: here densities are exact.
+// Samples the coat's reflection, or the base with a cosine density; the densities are exact here.
 FN bool clear_coat_sample(IN(Bsdf) b, vec3 wo, float uc, vec2 u, INOUT(BsdfSample) s) {
     float c = abs(wo.z);
     float r = fresnel_dielectric(c, b.eta);

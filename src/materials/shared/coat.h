@@ -1,11 +1,11 @@
-// What the coated materials share: the coat of a record, and how they evaluate and sample (SCATTERS_AS coat).
+// Common to the coated materials: the coat of a record, and their evaluation and sampling (SCATTERS_AS coat).
 #ifndef LAMPYRIS_MATERIALS_COAT
 #define LAMPYRIS_MATERIALS_COAT
 
 #include "materials/shared/clear_coat.h"
 #include "materials/shared/layered.h"
 
-// A coat of the given roughness over nothing yet.
+// A coat of the given roughness; the caller adds the base.
 FN Bsdf coat_make(IN(MaterialRecord) m, vec2 alpha) {
     Bsdf b = no_bsdf();
     b.eta = bounded_eta(m.eta);
@@ -18,7 +18,7 @@ FN Bsdf coat_make(IN(MaterialRecord) m, vec2 alpha) {
     return b;
 }
 
-// Whether the walk through a coat over a specular base has delta lobes alone.
+// Whether the walk through a coat over a specular base has only delta lobes.
 FN bool coat_is_specular(IN(Bsdf) b) { return dielectric_lobe_is_specular(b.alpha, b.eta) && is_black(b.albedo); }
 
 FN Spectrum coat_eval(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport, uint jobs, OUT(float) pdf) {

@@ -1,4 +1,4 @@
-// What the coated materials share: the parameters of the coat, and of the layer below it.
+// Common to the coated materials: parameters of the coat, and of the layer below it.
 #include "materials/shared/host.h"
 
 namespace lampyris {

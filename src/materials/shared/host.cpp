@@ -149,14 +149,15 @@ void read_conductor(MaterialContext& context, const std::string& prefix) {
         set_color0(context, read_color(context.build, reader, "reflectance", SpectrumUse::kAlbedo, Spectrum(0.5f)));
         return;
     }
-    // Where both are spectra, their reflectance decides: a metal's colour is not that of its mean eta and k.
+    // If both are spectra, colours are chosen to match their reflectance: a metal's colour is not that of its mean eta
+    // and k.
     const auto sampled = [&](const std::string& name, const char* absent) -> std::optional<SampledSpectrum> {
         const Parameter* parameter = reader.find(name);
         if (!parameter) return *named_spectrum(absent);
         if (parameter->type != ParameterType::kSpectrum) return {};
         const auto spectrum =
             sampled_spectrum(*parameter, context.build.description.directory, context.build.diagnostics);
-        return spectrum ? *spectrum : *named_spectrum(absent);  // what is wrong with it is told
+        return spectrum ? *spectrum : *named_spectrum(absent);  // an error is reported already
     };
     const std::optional<SampledSpectrum> eta_spectrum = sampled(eta, "metal-Cu-eta"),
                                          k_spectrum = sampled(k, "metal-Cu-k");

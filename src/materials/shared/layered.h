@@ -1,10 +1,11 @@
-// Coats: a dielectric interface over a diffuse or metallic base, with an optional scattering medium between, by a random
-// walk through the layers at every evaluation (pbrt, 4th edition, section 14.3; Guo et al. 2018, "Position-Free Monte
-// Carlo Simulation for Arbitrary Layered BSDFs"). Values are unbiased estimates (up to max_depth) that are functions of
-// the two directions: their random numbers are keyed by the directions' bits. Densities are pbrt's approximations.
+// Coats: a dielectric interface over a diffuse or metallic base, with an optional scattering medium in between,
+// evaluated by a random walk through the layers (pbrt, 4th edition, section 14.3; Guo et al. 2018, "Position-Free Monte
+// Carlo Simulation for Arbitrary Layered BSDFs"). Values are estimates up to max_depth, unbiased for smooth coats
+// and with MATERIAL_EXACT_COAT. They are functions of the two directions: the bits of the directions are the keys of the
+// random numbers. Densities are pbrt's approximations.
 //
-// Both sides show the coat (pbrt's twoSided): everything is turned so that wo.z > 0. The coat's interface is at height
-// `thickness`, the base at 0; the medium's extinction is 1. The base transmits nothing.
+// Both sides have the coat (pbrt's twoSided): directions are flipped so that wo.z > 0. The coat's interface is at
+// height `thickness`, the base at 0; the medium's extinction is 1. The base does not transmit.
 #ifndef LAMPYRIS_MATERIALS_LAYERED
 #define LAMPYRIS_MATERIALS_LAYERED
 
@@ -26,9 +27,9 @@ FN bool base_sample(IN(Bsdf) b, vec3 wo, vec2 u, INOUT(BsdfSample) s) {
     return conductor_lobe_sample(b.color0, b.color1, b.alpha_base, b.flags, wo, u, s);
 }
 
-// ---- Small things ----------------------------------------------------------------------------------------------------
+// ---- Helpers ---------------------------------------------------------------------------------------------------------
 
-// Zeros of either sign are the same direction.
+// Zeros of both signs must hash equally.
 FN uint hash_direction(vec3 w) {
     uint x = w.x == 0.0f ? 0u : floatBitsToUint(w.x);
     uint y = w.y == 0.0f ? 0u : floatBitsToUint(w.y);
@@ -40,10 +41,10 @@ FN vec2 rng_float2(INOUT(Rng) rng) {
     return vec2(x, y);
 }
 
-// Share that crosses the height dz of the medium unscattered along w.
+// Fraction that crosses the height dz of the medium along w without being scattered.
 FN float layer_transmittance(float dz, vec3 w) { return exp_of(-min(abs(dz) / max(abs(w.z), MIN_COSINE), 100.0f)); }
 
-// How far along w the walk is from height z when the medium scatters it: false if it reaches a boundary, at height z then.
+// Moves along w from height z to the next event: true if the medium scatters there, false at a boundary.
 FN bool layer_advance(IN(Bsdf) b, bool has_medium, vec3 w, INOUT(float) z, INOUT(Spectrum) weight, INOUT(Rng) rng) {
     float target = w.z > 0.0f ? b.thickness : 0.0f;
     if (!has_medium) {
@@ -60,23 +61,26 @@ FN bool layer_advance(IN(Bsdf) b, bool has_medium, vec3 w, INOUT(float) z, INOUT
 
 // ---- The walk --------------------------------------------------------------------------------------------------------
 
-// What is asked of a coat. LAYERED_SAMPLE: a direction, by a walk that chooses at every event. The walk's weight so far goes into f,
-// and the last event's density is the pdf: their quotient is unbiased, each alone is not a value or density of the whole.
-// LAYERED_VALUE: f(wo, wi), by walks from wo (refracted in) that are joined to wi at every event.
-// LAYERED_DENSITY: that of wi, or of the sampled direction where one is asked for, too: as if light left after at most one reflection
-// at the base, estimated by one sample of each direction inside, mixed with a tenth of the uniform density for all else (pbrt,
-// 4th edition, section 14.3.4).
+// Jobs of layered_scatter.
+// LAYERED_SAMPLE: a direction, by a walk that samples one at every event. f includes the walk's weight, and pdf is the
+// last event's density: their quotient is unbiased, but neither is a value or density of the whole coat.
+// LAYERED_VALUE: f(wo, wi), by walks from wo (refracted in) that are connected to wi at every event.
+// LAYERED_DENSITY: the density of wi, or of the sampled direction if there is one. It assumes that light leaves after at
+// most one reflection at the base, which is estimated with one sample of each direction inside. A tenth of it is the
+// uniform density, for everything else (pbrt, 4th edition, section 14.3.4).
 CONST uint LAYERED_SAMPLE = 1u;
 CONST uint LAYERED_VALUE = 2u;
 CONST uint LAYERED_DENSITY = 4u;
 
-// All of `jobs` by one loop, in which each function of the interface and of the base is called once: GLSL compilers inline every call,
-// and with a walk for each job a kernel took minutes to compile. The first steps of a walk refract wo in, and wi, if there is one.
+// Does all of `jobs` in one loop, with only one call of each function of the interface and of the base: GLSL compilers
+// inline every call, and with a walk per job a kernel took minutes to compile. The first steps of a walk refract wo in,
+// and wi, if there is one.
 //
-// Where light leaves the coat, the density for weighing w against wis, which was sampled by refracting in from wi, is that of the
-// latter if MATERIAL_EXACT_COAT. pbrt takes the density of choosing wi from inside, so that the two weights do not sum to 1, and a
-// rough coat's values come out too bright: 8 % over a white diffuse base at alpha = 0.3. Images can only agree with pbrt's by doing
-// the same, so this is the default. (f is reciprocal between the transport modes: one evaluation serves either way.)
+// Where light leaves the coat along w, the event's density is weighted against that of the direction refracted in from
+// wi. With MATERIAL_EXACT_COAT, the latter is the density of sampling -w from wi. pbrt uses the density of sampling wi
+// from -w instead, so that the two weights do not sum to 1, and values of rough coats are too bright: by 8 % over a
+// white diffuse base at alpha = 0.3. Images can only agree with pbrt's by doing the same, so this is the default. (f is
+// reciprocal between the transport modes: one evaluation serves both directions.)
 RARE_FN bool layered_scatter(IN(Bsdf) b, vec3 wo_any, vec3 wi_any, float uc, vec2 u, uint transport, uint jobs,
                              INOUT(BsdfSample) s, OUT(Spectrum) value, OUT(float) density) {
     value = Spectrum(0.0f);
@@ -91,7 +95,7 @@ RARE_FN bool layered_scatter(IN(Bsdf) b, vec3 wo_any, vec3 wi_any, float uc, vec
     bool found = false;
     for (uint job = LAYERED_SAMPLE; job <= LAYERED_DENSITY; job += job) {
         if ((jobs & job) == 0u) continue;
-        // Jobs that are not asked for are known when a kernel is compiled, and their code is left out.
+        // Jobs that are not requested are known when a kernel is compiled, so that their code is removed.
         bool sampling = (jobs & LAYERED_SAMPLE) != 0u && job == LAYERED_SAMPLE;
         bool valuing = (jobs & LAYERED_VALUE) != 0u && job == LAYERED_VALUE;
         bool weighing = (jobs & LAYERED_DENSITY) != 0u && job == LAYERED_DENSITY;
@@ -106,7 +110,7 @@ RARE_FN bool layered_scatter(IN(Bsdf) b, vec3 wo_any, vec3 wi_any, float uc, vec
         uint entries = sampling ? 1u : 2u;
         uint steps = entries + (weighing ? 1u : b.max_depth);
         uint walks = sampling ? 1u : b.samples;
-        Spectrum surface = Spectrum(0.0f);  // what the coat itself reflects; a density is the same number three times
+        Spectrum surface = Spectrum(0.0f);  // the coat's reflection; a density has the same number in all channels
         Spectrum sum = Spectrum(0.0f);
         for (uint walk = 0u; walk < walks; ++walk) {
             Spectrum beta = Spectrum(1.0f);
@@ -130,7 +134,8 @@ RARE_FN bool layered_scatter(IN(Bsdf) b, vec3 wo_any, vec3 wi_any, float uc, vec
                     scattered = layer_advance(b, has_medium, w, z, beta, rng);
                     at_coat = !scattered && z > 0.0f;
                 }
-                // At the base, or in the medium at height z: light arrives along exit_w, if this event can scatter it there ...
+                // At the base, or in the medium at height z: adds light that arrives along exit_w, if this event can
+                // scatter it into the walk ...
                 float event_pdf = 0.0f;
                 float arrived = 0.0f;
                 if (!at_coat && !sampling) {
@@ -152,12 +157,12 @@ RARE_FN bool layered_scatter(IN(Bsdf) b, vec3 wo_any, vec3 wi_any, float uc, vec
                         break;
                     }
                 }
-                // ... and the walk goes on in a direction chosen by the event.
+                // ... and the walk continues in a direction sampled by the event.
                 BsdfSample event = no_bsdf_sample();
                 bool goes_on = true;
                 if (at_coat) {
-                    // Of the inner side only the reflection goes on, unless sampling: leaving is accounted for where the direction
-                    // was chosen.
+                    // Unless sampling, only reflections at the inner side continue: light that leaves is added where
+                    // its direction was sampled.
                     float uc_event = uc;
                     vec2 u_event = u;
                     if (!sampling || !entering) {
@@ -210,7 +215,7 @@ RARE_FN bool layered_scatter(IN(Bsdf) b, vec3 wo_any, vec3 wi_any, float uc, vec
                     w = event.wi;
                 }
                 if (sampling) continue;
-                // What the coat reflects, and what leaves it.
+                // The coat's reflection, and light that leaves the coat.
                 bool outside = step == 0u;
                 bool leaves = !at_coat && !coat_specular && (weighing || w.z > 0.0f);
                 if (leaves || (outside && walk == 0u)) {

@@ -1,4 +1,4 @@
-// Material "thindielectric": a pane of glass as one surface, which reflects, or lets pass straight on.
+// Material "thindielectric": a pane of glass as a single surface, which reflects or transmits straight on.
 #ifndef LAMPYRIS_MATERIALS_THINDIELECTRIC
 #define LAMPYRIS_MATERIALS_THINDIELECTRIC
 
