@@ -11,9 +11,9 @@ CONST uint LOBE_SPECULAR = 16u;
 CONST uint LOBE_BOTH_SIDES = 3u;  // reflection and transmission: the choice is unrestricted
 
 // What an eye path of photon mapping does at a surface.
-CONST uint VISIBLE_FOLLOW = 0u;  // sample a direction and go on: (nearly) specular
+CONST uint VISIBLE_FOLLOW = 0u;  // sample a direction and continue: (nearly) specular
 CONST uint VISIBLE_GATHER = 1u;  // estimate the reflected radiance from photons here
-CONST uint VISIBLE_SPLIT = 2u;   // a smooth coat over a rough base: one of the two, by random choice
+CONST uint VISIBLE_SPLIT = 2u;   // a smooth coat over a rough base: one of the two by random choice, or both
 
 // A material at a point, with all parameters evaluated; created by bsdf_of_record. Each material decides what the
 // members mean; those in this source tree use them as follows.

@@ -42,7 +42,7 @@ CONST EffectSet kAllEffects = EffectSet(0u) LAMPYRIS_EFFECTS(LAMPYRIS_OR_EFFECT)
 CONST EffectSet kDiffuseEffects = EFFECT_SMOOTH_NORMALS | EFFECT_AREA_LIGHTS;
 CONST EffectSet kGlassEffects =
     kDiffuseEffects | EFFECT_QUADRICS | EFFECT_QUADRIC_LIGHTS | EFFECT_CONDUCTOR | EFFECT_DIELECTRIC | EFFECT_ROUGH;
-// Opaque, untextured surfaces under lights that are not surfaces themselves.
+// Opaque, untextured surfaces, lit by points, distant lights and environments.
 CONST EffectSet kSkyEffects = EFFECT_SMOOTH_NORMALS | EFFECT_QUADRICS | EFFECT_CONDUCTOR | EFFECT_ROUGH |
                               EFFECT_IMAGES | EFFECT_POINT_LIGHTS | EFFECT_DISTANT_LIGHTS | EFFECT_ENVIRONMENT |
                               EFFECT_ENVIRONMENT_IMAGE;

@@ -5,7 +5,7 @@
 //     struct Gathered { ... };                                     a query's sums, in registers
 //     FN Gathered gather_begin(uint query)
 //     FN void gather_add(INOUT(Gathered) g, uint query, IN(PhotonRecord) photon, float distance_squared, float weight)
-//     FN void gather_end(IN(Gathered) g, uint query)               called for every query with a radius >= 0
+//     FN void gather_end(IN(Gathered) g, uint query)               runs for every query with a radius >= 0
 // and, for structures built over the hit points, where photons reach the queries one by one in no fixed order,
 //     FN vec4 gather_value(uint query, IN(PhotonRecord) photon, float distance_squared)    gather_add's four terms, >= 0
 //     FN Gathered gather_sums(uint query, vec4 sums)                                       the Gathered with these sums

@@ -158,12 +158,12 @@ CONST uint TEXTURE_FBM = 2u;       // a.x: roughness; option: octaves; image: of
 CONST uint TEXTURE_WRINKLED = 3u;  // the same
 CONST uint TEXTURE_WINDY = 4u;     // the same, without a roughness
 CONST uint TEXTURE_MARBLE = 5u;    // the same, with a: roughness, scale, variation
-CONST uint TEXTURE_CHECKERBOARD = 8u;    // of tex1, tex2
-CONST uint TEXTURE_SCALE = 9u;           // of tex, scale
-CONST uint TEXTURE_MIX = 10u;            // of tex1, tex2, amount
-CONST uint TEXTURE_DIRECTION_MIX = 11u;  // of tex1, tex2; a: unit direction in world space
-CONST uint TEXTURE_DOTS = 12u;           // of inside, outside; image: the permutation
-CONST uint TEXTURE_BILERP = 13u;         // of v00, v01, v10, v11
+CONST uint TEXTURE_CHECKERBOARD = 8u;    // operands tex1, tex2
+CONST uint TEXTURE_SCALE = 9u;           // operands tex, scale
+CONST uint TEXTURE_MIX = 10u;            // operands tex1, tex2, amount
+CONST uint TEXTURE_DIRECTION_MIX = 11u;  // operands tex1, tex2; a: unit direction in world space
+CONST uint TEXTURE_DOTS = 12u;           // operands inside, outside; image: offset of the permutation
+CONST uint TEXTURE_BILERP = 13u;         // operands v00, v01, v10, v11
 CONST uint TEXTURE_STACK = 16u;          // maximum depth of the stack, and
 CONST uint TEXTURE_LENGTH = 1024u;       // maximum number of operations; the host checks both
 
@@ -251,7 +251,7 @@ CONST uint CDF_TOTAL = 0x80000000u;  // the last value of every CDF in `distribu
 // - projection. v0: position. v2: xmin, ymin, xmax, ymax of the picture at z = 1 in light space.
 struct LightRecord {
     uint kind;
-    uint flags;         // | medium << 16
+    uint flags;         // LIGHT_TWO_SIDED, LIGHT_PASSED; | medium << 16
     uint image;         // or the texture of an area light's emission, or NONE
     uint transform;     // light space to world, or NONE
     uint geometry;      // area lights

@@ -1,5 +1,5 @@
 // Parameters of an integrator or a photon map, declared once for both compilers:
-//     #define AO_PARAMS(P) P(int, rays, 4, 1, 1024, "occlusion rays per camera hit") ...
+//     #define AO_PARAMS(P) P(int, rays, 1, 1, 1024, "occlusion rays per camera hit") ...
 //     PARAMS(AoParams, AO_PARAMS)
 // A parameter is P(type, name, default, minimum, maximum, documentation); type is int, uint or float. The host
 // generates its specs from the same list with PARAMETER_FIELDS (core/base/parameters.h).

@@ -29,7 +29,7 @@ FN uvec3 pcg3d(uvec3 v) {
     return v;
 }
 
-// [0, 1) with 24 bits.
+// A number in [0, 1) from the upper 24 bits.
 FN float unit_float(uint bits) { return float(bits >> 8u) * 5.9604644775390625e-8f; }
 FN vec2 unit_floats(uvec2 bits) { return vec2(unit_float(bits.x), unit_float(bits.y)); }
 

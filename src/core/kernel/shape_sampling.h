@@ -12,7 +12,7 @@ struct ShapeSample {
     float pdf;  // 1/sr
     vec3 position;
     float offset;  // along the normal, to leave the rounding error of the surface
-    vec3 ng;       // unit geometric normal, oriented as Surface's
+    vec3 ng;       // unit geometric normal, on the same side as Surface's
     vec2 uv;
 };
 

@@ -29,7 +29,7 @@ FN Spectrum clamp_each(Spectrum s, float least, float most) {
     return SPECTRUM_EACH(CLAMPED);
 #undef CLAMPED
 }
-// exp(-s), value by value.
+// exp(-s) of each value.
 FN Spectrum exp_of_minus(Spectrum s) {
 #define EXP_OF_MINUS(i) exp_of(-s[i])
     return SPECTRUM_EACH(EXP_OF_MINUS);
