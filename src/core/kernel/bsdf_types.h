@@ -31,7 +31,7 @@ struct Bsdf {
     uint max_depth;   // coats: maximum number of events of a random walk
     uint samples;     // coats: random walks per evaluation
     uint walk;        // coats: seed of the walks; not 0 if the same two directions are evaluated repeatedly
-    float inner;  // smooth clear coats over diffuse bases: inner reflectance (clear_coat.h); else negative
+    float inner;      // smooth clear coats over diffuse bases: inner reflectance (clear_coat.h); else negative
 };
 
 // A Bsdf that scatters nothing.

@@ -37,7 +37,7 @@ LAMPYRIS_EFFECTS(LAMPYRIS_EFFECT_CONSTANT)
 #define LAMPYRIS_OR_EFFECT(constant, bit, name, cost) | constant
 CONST EffectSet kAllEffects = EffectSet(0u) LAMPYRIS_EFFECTS(LAMPYRIS_OR_EFFECT);
 #undef LAMPYRIS_OR_EFFECT
-// Sets for which C++ kernels are built (KERNEL_CPU_VARIANTS): a scene runs on the smallest one that has all of its
+// Sets for which C++ kernels are built (CPU_EFFECTS of lampyris_kernel): a scene runs on the smallest one that has all of its
 // effects.
 CONST EffectSet kDiffuseEffects = EFFECT_SMOOTH_NORMALS | EFFECT_AREA_LIGHTS;
 CONST EffectSet kGlassEffects =

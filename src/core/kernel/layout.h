@@ -50,9 +50,9 @@ struct GeometryRecord {
     uint first_normal;   // in `normals`, counted in vertices
     uint first_uv;       // in `uvs`, counted in vertices
     uint primitive_count;
-    uint media;  // interior << 16 | exterior: a transition between media where they differ
+    uint media;  // interior << 16 | exterior: a boundary between media if they differ
     Quadric quadric;
-    float alpha;  // below 1 only where EFFECT_ALPHA
+    float alpha;  // below 1 only with EFFECT_ALPHA
     float unused;
 };
 
@@ -267,8 +267,8 @@ struct LightRecord {
     float extent;  // distance of the farthest corner from the centroid
     vec3 p2;
     float inverse_area;
-    vec3 normal;           // unit, turned as the geometry's flags say
-    float smooth_normals;  // 1 where vertex normals turn it (point by point)
+    vec3 normal;           // unit, flipped as the geometry's flags say
+    float smooth_normals;  // 1 if vertex normals may flip it (point by point)
 };
 
 // ---- Camera, film, scene ---------------------------------------------------------------------------------------------

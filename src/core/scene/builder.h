@@ -148,7 +148,7 @@ struct MaterialContext {
     void ask(uint64_t effect) { build.ask(effect, asked_by); }
 };
 using MaterialFactory = void (*)(MaterialContext&);
-// MaterialRecord::floats2.w: the roughness of a material's roughest lobe. Photons are stored on a surface if an eye path may
+// MaterialRecord::roughest_alpha: the roughness of a material's roughest lobe. Photons are stored on a surface if an eye path may
 // gather there, that is, if this roughness is no less than the integrator's `glossy`. A material that sets nothing counts as
 // diffuse.
 constexpr float kRoughestDiffuse = 1e30f;

@@ -26,7 +26,7 @@ uint32_t append_image_distribution(std::span<const float> weights, uint32_t widt
 // not black: a light that is weak on the whole may be the only one that reaches some corner.
 inline constexpr double kEvenLightShare = 0.05;
 
-// Sets the probability of choosing each of scene.lights (LightRecord::emission.w) and appends the table that kernels choose by.
+// Sets the probability of choosing each of scene.lights (LightRecord::choice_probability) and appends the table that kernels choose by.
 // Apart from the even share, the probability is in proportion to `powers` (luminous, W; one per light; zero: never chosen).
 void choose_lights(Scene& scene, std::span<const double> powers);
 

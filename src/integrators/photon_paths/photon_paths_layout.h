@@ -4,11 +4,11 @@
 
 // Where an eye path ended: its last ray and the primitive that it hit, from which the surface is recomputed, so that a
 // record is short and the gather kernel traces no rays. Its position and radius are in `queries`.
-struct HitPointRecord {      // hit_record.h has functions that unpack it
-    uvec4 origin;     // of the last ray (bits of floats); w: instance
-    uvec4 direction;  // bits of floats; w: geometry
-    vec4 throughput;  // rgb; w: weight of the pixel filter
-    vec4 radiance;    // rgb: emission before the hit point, and direct light there; w: radius of the first pass
+struct HitPointRecord {  // hit_record.h has functions that unpack it
+    uvec4 origin;        // of the last ray (bits of floats); w: instance
+    uvec4 direction;     // bits of floats; w: geometry
+    vec4 throughput;     // rgb; w: weight of the pixel filter
+    vec4 radiance;       // rgb: emission before the hit point, and direct light there; w: radius of the first pass
     uvec4 more;  // primitive, minimum radius (bits), medium of the last ray, vertex number on the eye path (from 1)
 };
 
