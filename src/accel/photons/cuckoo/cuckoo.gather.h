@@ -14,8 +14,8 @@ BUFFER_RO(6, uvec4, fluxes)
 FN uint cuckoo_find(IN(CuckooRecord) c, uint key) {
     for (uint way = 0u; way < CUCKOO_WAYS; ++way) {
         uint item = table[cuckoo_entry(c, key, way)];
-        // An occupied entry never becomes empty again. So the key was never stored here, nor at a later way.
-        if (item == 0u) return 0u;
+        // Entries are never emptied, so no cell that has an entry lies behind an empty one. A stashed cell may.
+        if (item == 0u) break;
         if (cells[item - 1u].x == key) return item;
     }
     uint stashed = min(stash[0], c.stash);
