@@ -1,6 +1,7 @@
 // Cases that are particularly hard for a kd-tree; photon_map_test and photon_map_long_test cover the rest.
 #include "support/photon_sets.h"
 
+#include <glm/glm.hpp>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -4,6 +4,7 @@
 #include "support/device_run.h"
 #include "support/photon_sets.h"
 
+#include <glm/glm.hpp>
 #include <gtest/gtest.h>
 
 #include <algorithm>
