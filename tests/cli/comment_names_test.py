@@ -19,7 +19,7 @@ FOREIGN = {
     *("NoContraction", "VK_KHR_acceleration_structure", "vkCmdUpdateBuffer"),
     *("DiffuseAreaLight", "DisablePixelJitter", "FilmBaseParameters", "SpotLight", "twoSided"),  # pbrt-v4's
     *("cpu/integrators.cpp", "cameras.cpp"),  # pbrt-v4's
-    *("R_i", "R_n", "int_0", "dmu_o", "gamma_3", "Phi_i", "tau_n", "e_r", "e_phi", "dP", "n_d", "sum_b", "sum_c"),
+    *("R_i", "R_n", "int_0", "dmu_o", "gamma_3", "Phi_i", "tau_n", "e_r", "e_phi", "dP", "dA", "n_d", "sum_b", "sum_c"),
     *("se_ref", "se_ours"),
 }
 # Examples, and patterns of names.

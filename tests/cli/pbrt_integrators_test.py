@@ -110,7 +110,7 @@ def test_a_scene_without_an_integrator_asks_for_none(program, scene, tmp_path):
 def test_the_command_line_takes_our_names(program, scene, tmp_path):
     done = run(program, scene, "-o", tmp_path / "o.pfm", "--integrator", "volpath")
     assert done.returncode == 1
-    assert '"volpath"' in done.stderr and '"path" renders' in done.stderr
+    assert '"volpath"' in done.stderr and 'rendered with "path"' in done.stderr
 
 
 def test_path_says_that_it_absorbs_and_how_to_choose(program, scene, tmp_path):

@@ -73,7 +73,7 @@ def test_help_is_a_command(program):
 def test_commands_are_described_in_one_mood(program):
     commands = re.findall(r"^  ([a-z]+) +([A-Z]\w+)", say(program, "--help").stdout, re.MULTILINE)
     assert len(commands) >= 6
-    verbs = {"Render", "Tell", "Compare", "List", "Measure"}
+    verbs = {"Render", "Show", "Compare", "List", "Measure"}
     assert {verb for _, verb in commands} <= verbs, commands
 
 
