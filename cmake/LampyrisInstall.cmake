@@ -45,7 +45,8 @@ install(FILES ${PROJECT_BINARY_DIR}/LampyrisConfig.cmake ${PROJECT_BINARY_DIR}/L
   cmake/LampyrisKernels.cmake cmake/LampyrisPlugin.cmake cmake/cpu_kernel.cpp.in
   cmake/plugin_abi.cpp
   DESTINATION ${package_dir})
-install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES LICENSE README.md CONTRIBUTING.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN plan.md EXCLUDE)
 
 add_library(Lampyris::lampyris ALIAS lampyris)
 include(LampyrisPlugin)

@@ -13,6 +13,11 @@ const IntegratorFactory& require_integrator(const std::string& name) {
         throw InputError(
             fmt::format("error: unknown integrator \"{}\"; scenes that name pbrt-v4's are rendered with \"{}\"", name,
                         rendering_integrator(name)));
+    if (!integrators().find(name)) {
+        const auto [message, hint] = integrators().unknown(name);
+        throw InputError(fmt::format("error: {}{}{}; --plugin FILE.so loads others", message,
+                                     hint.starts_with(' ') ? "" : "; ", hint));
+    }
     return integrators().require(name);
 }
 
@@ -26,8 +31,9 @@ ChosenIntegrator choose_integrator(BuiltScene& built, const PluginChoice& overri
     chosen.name = from_scene ? rendering_integrator(of_scene.type) : override.name;
     if (from_scene && !integrators().find(chosen.name)) {
         const auto [message, hint] = integrators().unknown(chosen.name);
-        diagnostics.error(of_scene.type_location, message,
-                          hint + "; --integrator NAME renders the scene with another one");
+        diagnostics.error(
+            of_scene.type_location, message,
+            hint + "; --plugin FILE.so loads others, --integrator NAME renders the scene with another one");
         return chosen;
     }
     const IntegratorFactory& factory = require_integrator(chosen.name);
