@@ -357,8 +357,8 @@ def lines_table(lines: list[dict]) -> Table:
         Column("files", "files"),
     ]
     caption = (
-        "Lines of `*.kernel.h`, `*.gather.h` and other headers for kernels without comments and blank ones. What structures share "
-        "(hashing, prefix sums, sorting) and what runs on the host is not counted; structures of one folder have the "
-        "same count."
+        "Lines of `*.kernel.h`, `*.gather.h` and other headers for kernels without comments and blank ones. What "
+        "structures share (hashing, prefix sums, sorting) and what runs on the host is not counted; structures of one "
+        "folder have the same count."
     )
     return Table("lines", "Lines of kernels", columns, lines, caption)

@@ -37,7 +37,7 @@ def kernel_folder(structure: dict) -> Path:
 
 
 def kind_of(file: Path) -> str | None:
-    """What a header is for; None for parameters, and for headers of the host, which have no include guard of their own."""
+    """What a header is for; None for parameters, and for headers of the host."""
     if file.name.endswith(".kernel.h"):
         return "construction"
     if file.name.endswith(".gather.h"):

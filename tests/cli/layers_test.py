@@ -14,7 +14,15 @@ LAYERS = {
     "accel/rays": {"core/base", "core/kernel", "core/device", "core/scene"},
     "accel/photons": {"core/base", "core/kernel", "core/device", "core/photons"},
     "materials": {"core/base", "core/kernel", "core/device", "core/scene"},
-    "integrators": {"core/base", "core/kernel", "core/device", "core/image", "core/photons", "core/scene", "core/render"},
+    "integrators": {
+        "core/base",
+        "core/kernel",
+        "core/device",
+        "core/image",
+        "core/photons",
+        "core/scene",
+        "core/render",
+    },
     "backends/cpu": {"core/base", "core/kernel", "core/device", "core/scene", "accel/rays"},
     "backends/vulkan": {"core/base", "core/kernel", "core/device", "core/scene", "accel/rays"},
 }

@@ -2,7 +2,7 @@
 // the benchmark: build() takes the photons; gather() takes query points, and passes the photons it finds to a consumer.
 //     class SortedGrid : public PhotonMap { public: SortedGridParams params; ... };
 //     REGISTER_PHOTON_MAP(SortedGrid, SORTED_GRID_PARAMS, "sorted_grid", "A hash grid, its photons sorted by cell.")
-// docs/photon-maps.md explains how to write one.
+// docs/photon-map-guide.md explains how to write one.
 #pragma once
 
 #include "core/base/parameters.h"
