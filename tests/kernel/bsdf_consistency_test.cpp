@@ -65,6 +65,36 @@ TEST(BsdfConsistency, SamplesSayWhatEvaluationSays) {
     }
 }
 
+// The density of the other direction is the one with which a path from the other end, which transports the other quantity,
+// samples it; of a diffuse surface that is |wo.z| / pi.
+TEST(BsdfConsistency, DensitiesOfBothDirections) {
+    std::mt19937 random(11);
+    std::vector<vec4> pairs, swapped;
+    for (int i = 0; i < 2000; ++i) {
+        const vec4 a(random_direction(random), 0), b(random_direction(random), 0);
+        pairs.insert(pairs.end(), {a, b});
+        swapped.insert(swapped.end(), {b, a});
+    }
+    for (const std::string& backend : usable_backends()) {
+        BsdfProber& prober = BsdfProber::on(backend);
+        for (size_t m = 0; m < rough_materials().size(); ++m) {
+            for (const uint transport : {kRadiance, kImportance}) {
+                SCOPED_TRACE(backend + ", material " + std::to_string(m));
+                BsdfProbe probe = rough_materials()[m], other = probe;
+                probe.what.z = transport, other.what.z = 1 - transport;
+                const auto both = prober.run(Probe::both, {probe}, pairs, pairs.size() / 2, 2);
+                const auto there = prober.run(Probe::eval, {probe}, pairs, pairs.size() / 2, 1);
+                const auto back = prober.run(Probe::eval, {other}, swapped, pairs.size() / 2, 1);
+                for (size_t i = 0; i < pairs.size() / 2; ++i) {
+                    EXPECT_EQ(both[2 * i], there[i]);
+                    EXPECT_EQ(both[2 * i + 1].w, back[i].w);
+                    if (m == 0 && there[i].w > 0) EXPECT_NEAR(both[2 * i + 1].w, std::abs(pairs[2 * i].z) / kPi, 1e-6);
+                }
+            }
+        }
+    }
+}
+
 // f(wo, wi) of radiance is f(wi, wo) of importance. For the same pair of directions, importance is eta^2 times radiance for
 // refracted light (eta: relative index of wi's side), and equal to it for reflected light.
 TEST(BsdfConsistency, ValuesAreReciprocal) {

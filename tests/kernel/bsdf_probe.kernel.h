@@ -20,6 +20,7 @@ CONST uint PROBE_EVAL_UNIFORM = 3u;  // results[4 i ...]: a uniform direction wi
 CONST uint PROBE_EVERYTHING =
     4u;  // inputs[4 i ...]: wo, uc; wi, transport; u; -: samples and evaluates; results as PROBE_SAMPLE
 CONST uint PROBE_PROPERTIES = 5u;  // results[i]: albedo, specular
+CONST uint PROBE_BOTH = 6u;        // inputs[2 i ...]: wo, wi; results[2 i ...]: f, pdf; -, pdf of the other direction
 
 struct BsdfProbe {
     uvec4 what;  // operation, seed, transport, stride: index i asks probes[i / stride]
@@ -77,6 +78,14 @@ KERNEL(bsdf_probe) {
         }
         Spectrum f = bsdf_eval_pdf(b, wo, wi, transport, pdf);
         results[index] = slot_of(f, pdf);
+        return;
+    }
+    if (operation == PROBE_BOTH) {
+        float reverse;
+        Spectrum f =
+            bsdf_eval_pdfs(b, vec3(inputs[2u * index]), vec3(inputs[2u * index + 1u]), transport, pdf, reverse);
+        results[2u * index] = slot_of(f, pdf);
+        results[2u * index + 1u] = vec4(0.0f, 0.0f, 0.0f, reverse);
         return;
     }
     Rng rng = rng_begin(p.what.y, index);

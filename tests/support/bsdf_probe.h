@@ -22,7 +22,7 @@ inline constexpr uint kReflection = 1, kTransmission = 2, kSpecular = 16;
 inline constexpr double kPi = std::numbers::pi;
 
 // As in the kernel.
-enum class Probe : uint { sample, eval, eval_at_wo, eval_uniform, everything, properties };
+enum class Probe : uint { sample, eval, eval_at_wo, eval_uniform, everything, properties, both };
 struct BsdfProbe {
     uvec4 what{0, 1, 0, 1};
     uvec4 kind{0, 0, 10, 1};

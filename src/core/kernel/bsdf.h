@@ -30,6 +30,13 @@ FN float bsdf_pdf(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport) {
     return pdf;
 }
 
+// The same, with the densities of both directions: of sampling wi from wo, and of sampling wo from wi if the other quantity is
+// transported (a path from the other end). For methods that weigh paths from camera and lights.
+FN Spectrum bsdf_eval_pdfs(IN(Bsdf) b, vec3 wo, vec3 wi, uint transport, OUT(float) forward, OUT(float) reverse) {
+    reverse = bsdf_pdf(b, wi, wo, TRANSPORT_IMPORTANCE - transport);
+    return bsdf_eval_pdf(b, wo, wi, transport, forward);
+}
+
 // Samples a direction wi with three uniform random numbers; false if nothing is scattered (the path ends).
 FN bool bsdf_sample(IN(Bsdf) b, vec3 wo, float uc, vec2 u, uint transport, OUT(BsdfSample) s) {
     float density;

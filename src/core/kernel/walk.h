@@ -141,6 +141,14 @@ FN Vertex vertex_at(INOUT(Surface) s, vec3 direction) {
 
 FN Vertex walk_vertex(IN(Walk) w, INOUT(Surface) s) { return vertex_at(s, w.ray.direction); }
 
+// The cosine for f(wo, wi) if a vertex of a walk from a light is connected to a point in the unit direction `onward`:
+// |wi.Ns wo.Ng| / |wi.Ng|, with wi towards the light and wo onward, since shading normals are not symmetric (Veach 1997,
+// equation 5.19). 0 if the light grazes the surface.
+FN float importance_cosine(IN(Walk) w, IN(Surface) s, IN(Vertex) v, vec3 onward) {
+    float towards = abs_dot(w.ray.direction, s.ng);
+    return towards > 0.0f ? abs(v.wo.z) * abs_dot(onward, s.ng) / towards : 0.0f;
+}
+
 // The factor of a sampled direction for the throughput: the BSDF times the cosine over the density, with the correction
 // for shading normals that the transport requires.
 FN Spectrum vertex_weight(IN(Walk) w, IN(Surface) s, IN(Vertex) v, IN(BsdfSample) next, vec3 onward) {
