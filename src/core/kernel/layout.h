@@ -298,6 +298,9 @@ struct CameraRecord {
     vec4 to0;  // rows of world-from-camera (camera space: +x right, +y up, +z forward, as pbrt's)
     vec4 to1;
     vec4 to2;
+    vec4 from0;  // rows of camera-from-world
+    vec4 from1;
+    vec4 from2;
     vec4 screen;  // raster to camera space at z = 1: x = screen.x + px * screen.z, y = screen.y + py * screen.w
     float lens_radius;
     float focal_distance;
@@ -305,8 +308,8 @@ struct CameraRecord {
     float imaging_ratio;
     float filter_radius_x;
     float filter_radius_y;
-    float unused0;
-    float unused1;
+    float volume;  // |det| of world-from-camera
+    float unused;
 };
 
 struct SceneRecord {

@@ -95,6 +95,8 @@ void build_view(BuildContext& context) {
                                   "a scale by 0, or numbers out of range?");
     const kernel::TransformRecord world = transform_record(camera.world_from_camera.matrix[0]);
     record.to0 = world.to0, record.to1 = world.to1, record.to2 = world.to2;
+    record.from0 = world.from0, record.from1 = world.from1, record.from2 = world.from2;
+    record.volume = float(std::abs(glm::determinant(glm::dmat3(glm::mat3(camera.world_from_camera.matrix[0])))));
     build_entity(context, camera_registry(), camera, "perspective",
                  [&](CameraFactory factory, ParameterReader& reader) {
                      CameraContext view{context,
