@@ -13,7 +13,7 @@ INTEGRATORS = {
     "simplepath": ("path", '"integer maxdepth" 2 "bool samplelights" false "bool samplebsdf" false'),
     "simplevolpath": ("path", '"integer maxdepth" 2'),
     "randomwalk": ("path", '"integer maxdepth" 2'),
-    "lightpath": ("path", '"integer maxdepth" 2'),
+    "lightpath": ("light", '"integer maxdepth" 2'),
     "function": (
         "path",
         '"string function" "disk" "string filename" "a" "string imagefilename" "b" "bool skipbad" false',

@@ -245,6 +245,7 @@ INSTANTIATE_TEST_SUITE_P(Backends, TwoThreads, testing::ValuesIn(usable_backends
 TEST(ErrorRateOf, EachIntegratorIsWhatTheorySays) {
     const std::map<std::string, ErrorRate> expected = {{"path", ErrorRate::of_samples()},
                                                        {"ao", ErrorRate::of_samples()},
+                                                       {"light", ErrorRate::of_samples()},
                                                        {"sppm", ErrorRate::of_photons(0.25)},
                                                        {"ppm", ErrorRate::of_photons(0.25)},
                                                        {"photon_map", ErrorRate::of_photons(1.0)}};

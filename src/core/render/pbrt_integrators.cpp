@@ -53,10 +53,7 @@ constexpr PbrtIntegrator kIntegrators[] = {
     {"bdpt", "path", "paths start at the camera alone: the same image, with other noise", false, kOfBdpt},
     {"function", "path", "pbrt-v4's measures a sampler's error and renders no image; this renders the scene", false,
      kOfFunction},
-    {"lightpath", "path",
-     "paths start at the camera, not at lights: the same image, except for directly visible specular surfaces, which "
-     "pbrt-v4 shows black",
-     true, kDepthAlone},
+    {"lightpath", "light", "lamps and the sky are seen directly, too; pbrt-v4 leaves them out", true, kDepthAlone},
     {"mlt", "path", "independent samples, not mutations: the same image, with other noise", false, kOfMlt},
     {"path", "path", "", true, kOfPath},
     {"randomwalk", "path",

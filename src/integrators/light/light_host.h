@@ -1,0 +1,11 @@
+// The records of light_layout.h for host code.
+#pragma once
+
+#include "core/device/kernel_types.h"
+
+namespace lampyris::kernel {
+#define CONST inline constexpr
+#include "core/kernel/splat_layout.h"
+#include "integrators/light/light_layout.h"
+#undef CONST
+}  // namespace lampyris::kernel
