@@ -60,20 +60,25 @@ Film::Film(Device& device, const Scene& scene, const std::array<int, 4>& crop)
     : window_(crop[0], crop[1], crop[2] - crop[0], crop[3] - crop[1]),
       full_width_(scene.width()),
       full_height_(scene.height()) {
-    // The film's copy on the device, the one here, and the image with its channels (14 floats a pixel). Not counted: the
-    // two copies of FilmBias and the six more channels if attach_bias is called later (88 bytes a pixel).
-    const uint64_t needed = uint64_t(pixel_count()) * (2 * sizeof(kernel::FilmPixel) + 14 * sizeof(float));
-    if (needed > machine_memory())
-        throw MachineError(
-            fmt::format("error: a film of {}x{} pixels needs {:.1f} GB, and this machine has {:.1f} GB of memory; "
-                        "render a part of it (--crop), or at a smaller --resolution",
-                        window_.z, window_.w, double(needed) * 1e-9, double(machine_memory()) * 1e-9));
+    // The film's copy on the device, the one here, and the image with its channels (14 floats a pixel).
+    require_memory(2 * sizeof(kernel::FilmPixel) + 14 * sizeof(float));
     buffer_ = device.create_buffer(size_t(pixel_count()) * sizeof(kernel::FilmPixel), "the film");
     buffer_->fill_zero();
     pixels_.resize(pixel_count());
 }
 
+void Film::require_memory(size_t bytes_per_pixel) const {
+    const uint64_t needed = uint64_t(pixel_count()) * bytes_per_pixel;
+    if (needed <= machine_memory()) return;
+    throw MachineError(
+        fmt::format("error: a film of {}x{} pixels needs {:.1f} GB, and this machine has {:.1f} GB of memory; "
+                    "render a part of it (--crop), or at a smaller --resolution",
+                    window_.z, window_.w, double(needed) * 1e-9, double(machine_memory()) * 1e-9));
+}
+
 void Film::attach_bias(BufferHandle buffer, double confidence) {
+    // Its copies, and six more channels.
+    require_memory(2 * (sizeof(kernel::FilmPixel) + sizeof(kernel::FilmBias)) + 20 * sizeof(float));
     bias_buffer_ = std::move(buffer);
     biases_.assign(pixels_.size(), kernel::FilmBias{});
     confidence_ = confidence;

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace lampyris {
@@ -49,8 +50,10 @@ class Film {
     // clamped to it.
     Image image() const;
     const std::vector<kernel::FilmPixel>& pixels() const { return pixels_; }
+    std::vector<kernel::FilmPixel> take_pixels() { return std::move(pixels_); }  // the last call
 
  private:
+    void require_memory(size_t bytes_per_pixel) const;  // throws MachineError
     std::array<ChannelEstimate, 3> bias_estimates(size_t pixel) const;
     PixelEstimate pixel_estimate(size_t pixel) const;
     glm::uvec4 window_;

@@ -225,7 +225,7 @@ RenderOutcome Rendering::State::run(uint32_t seed) {
     outcome.record.total_s = setup_s + seconds_since(run_start);
     outcome.image = film.image();
     outcome.image.metadata = image_metadata(outcome.record);
-    outcome.pixels = film.pixels();
+    outcome.pixels = film.take_pixels();
     return outcome;
 }
 
