@@ -108,7 +108,7 @@ TEST(Render, WhatIsWrongWithARequestIsAnError) {
     expect(with([](RenderRequest& r) { r.integrator = "path:maxdepht=2"; }), "maxdepth");
     expect(with([](RenderRequest& r) { r.photon_map = "bvh"; }), "\"path\" does not use a photon map");
     expect(with([](RenderRequest& r) { r.sampler = "halton"; }), "unknown sampler \"halton\"");
-    expect(with([](RenderRequest& r) { r.limits.passes = 0; }), "no pass");
+    expect(with([](RenderRequest& r) { r.limits.passes = 0; }), "must be at least 1");
     expect(with([](RenderRequest& r) { r.limits.seconds = 0.0; }), "above 0 seconds");
     expect(with([](RenderRequest& r) { r.replay = {12, 0, 0}; }), "12x8 pixels");
     expect(with([](RenderRequest& r) { r.build.resolution = {0, 8}; }), "sides are 1 to");
