@@ -57,6 +57,19 @@ struct IntegratorRegistration {
         ::lampyris::IntegratorFactory{&::lampyris::RegisteredIntegrator<Class>::create, \
                                       PARAMETER_FIELDS(decltype(Class::params), LIST)});
 
+// For an integrator that is nothing but a radiance function (NAME.radiance.h), which is rendered by render_samples.
+#define REGISTER_RADIANCE(Params, LIST, name, file, summary)                    \
+    namespace {                                                                 \
+    class IntegratorOf##Params : public ::lampyris::Integrator {                \
+     public:                                                                    \
+        Params params;                                                          \
+        void render(::lampyris::RenderSession& session) override {              \
+            ::lampyris::render_samples(session, file, &params, sizeof(params)); \
+        }                                                                       \
+    };                                                                          \
+    REGISTER_INTEGRATOR(IntegratorOf##Params, LIST, name, summary)              \
+    }
+
 // Uploads one struct as a kernel's argument buffer.
 template <typename T>
 BufferHandle argument_buffer(Device& device, const T& value, const char* name) {
