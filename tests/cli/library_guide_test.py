@@ -95,7 +95,7 @@ def test_the_snippets_run(source_dir, outside):
     assert len(snippets(guide(source_dir))) == 5
     said = checked(outside / "snippets/build/snippets", cwd=outside).stdout
     assert (outside / "sphere.exr").stat().st_size > 1000
-    shown = re.search(r"with its place:\n\n```\n(.*?)\n```", guide(source_dir), flags=re.DOTALL).group(1)
+    shown = re.search(r"with its location:\n\n```\n(.*?)\n```", guide(source_dir), flags=re.DOTALL).group(1)
     assert shown in said
     passes = re.search(r"^(\d+) passes$", said, flags=re.MULTILINE)
     assert passes, said

@@ -27,7 +27,8 @@ BUFFER_RW(2, FilmPixel, film)
 KERNEL(flat) {
     float n = float(window[0].samples);
     float v = params[0].value;
-    film[index].sum += vec4(n * v, n * v, n * v, n);
+    film[index].sum += vec3(n * v);
+    film[index].weight += n;
     film[index].samples += window[0].samples;
 }
 """,

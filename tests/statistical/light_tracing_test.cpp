@@ -144,7 +144,7 @@ TEST_P(LightTracing, AgreesWithPathTracing) {
                              "reference/thin-lens",       "reference/conductor-rough",
                              "reference/dielectric-rough"}) {
         if (GetParam() == "vulkan" && name != std::string("reference/diffuse"))
-            continue;  // LightTracing.SameOnEveryBackend
+            continue;  // SameOnEveryBackendAndThread
         const std::string file = kScenes + name + ".pbrt";
         std::stringstream read;
         read << std::ifstream(file).rdbuf();
