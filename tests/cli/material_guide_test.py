@@ -10,24 +10,14 @@ import subprocess
 
 import pytest
 
-from support.plugin_project import checked, run, write_files
+from support.plugin_project import check_example, checked, guide_files, run, write_files
 from support.render_program import read_pfm
 
 SHEET = math.pi / (math.pi + math.pi / 2 - 2 / 3)
 
 
-def guide_files(source_dir):
-    """The code blocks that docs/material-guide.md announces with "`orennayar/NAME`:"."""
-    text = (source_dir / "docs/material-guide.md").read_text()
-    return dict(re.findall(r"^`orennayar/([^`]+)`:\n\n```\w+\n(.*?)^```$", text, flags=re.MULTILINE | re.DOTALL))
-
-
 def test_the_guide_shows_the_example(source_dir):
-    files = guide_files(source_dir)
-    example = source_dir / "examples/orennayar"
-    assert set(files) == {path.name for path in example.iterdir() if path.name != "README.md"}
-    for name, text in files.items():
-        assert text == (example / name).read_text(), f"docs/material-guide.md and examples/orennayar/{name} differ"
+    check_example(source_dir, "material-guide.md", "orennayar")
 
 
 @pytest.fixture
@@ -43,7 +33,7 @@ def generate(source_dir, tmp_path):
 
 
 def test_the_generator_takes_the_guides_folder(source_dir, generate, tmp_path):
-    write_files(tmp_path / "orennayar", guide_files(source_dir))
+    write_files(tmp_path / "orennayar", guide_files(source_dir, "material-guide.md", "orennayar"))
     done = generate(tmp_path / "orennayar")
     assert done.returncode == 0, done.stderr
     numbers = re.findall(r"MATERIAL_(\w+) = (\d+)u;", (tmp_path / "out/materials/list.h").read_text())
@@ -112,7 +102,7 @@ def assert_no_cost(without, having, name):
 
 @pytest.mark.long
 def test_lampyris_is_built_with_the_guides_material(source_dir, build_dir, tmp_path):
-    write_files(tmp_path / "orennayar", guide_files(source_dir))
+    write_files(tmp_path / "orennayar", guide_files(source_dir, "material-guide.md", "orennayar"))
     options = [f"-DLAMPYRIS_EXTRA_MATERIALS={tmp_path}/orennayar", "-DLAMPYRIS_TESTS=OFF"]
     quick = ["-DLAMPYRIS_SPECIALISED_KERNELS=OFF", "-DCMAKE_BUILD_TYPE=Release"]
     checked("cmake", "-S", source_dir, "-B", tmp_path / "build", "-G", "Ninja", *options, *quick)

@@ -2,11 +2,10 @@
 and finds what brute_force finds with Lampyris' consumers, on every backend."""
 
 import json
-import re
 
 import pytest
 
-from support.plugin_project import build, checked, configure, write_files
+from support.plugin_project import build, check_example, checked, configure, guide_files, write_files
 
 SCENE = """
 LookAt 0 1 -4  0 0.5 0  0 1 0
@@ -26,24 +25,14 @@ Shape "sphere" "float radius" 0.6
 """
 
 
-def guide_files(source_dir):
-    """The code blocks that docs/photon-map-guide.md announces with "`slabs/NAME`:"."""
-    text = (source_dir / "docs/photon-map-guide.md").read_text()
-    return dict(re.findall(r"^`slabs/([^`]+)`:\n\n```\w+\n(.*?)^```$", text, flags=re.MULTILINE | re.DOTALL))
-
-
 def test_the_guide_shows_the_example(source_dir):
-    files = guide_files(source_dir)
-    example = source_dir / "examples/slabs"
-    assert set(files) == {path.name for path in example.iterdir() if path.name != "README.md"}
-    for name, text in files.items():
-        assert text == (example / name).read_text(), f"docs/photon-map-guide.md and examples/slabs/{name} differ"
+    check_example(source_dir, "photon-map-guide.md", "slabs")
 
 
 @pytest.fixture(scope="module")
 def outside(source_dir, installed, tmp_path_factory):
     folder = tmp_path_factory.mktemp("outside")
-    write_files(folder / "slabs", guide_files(source_dir))
+    write_files(folder / "slabs", guide_files(source_dir, "photon-map-guide.md", "slabs"))
     (folder / "scene.pbrt").write_text(SCENE)
     configure(folder / "slabs", installed, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release")
     build(folder / "slabs")

@@ -2,21 +2,14 @@
 with --plugin, and give the image whose answer the scene's comment derives, on every backend."""
 
 import os
-import re
 
 import numpy as np
 import pytest
 
-from support.plugin_project import build, configure, run, write_files
+from support.plugin_project import build, check_example, configure, guide_files, run, write_files
 
 FACING_MEAN = 2.0 / 3.0  # of sqrt(1 - r^2) over the unit disc
 FACING_SQUARED_MEAN = 1.0 / 2.0
-
-
-def guide_files(source_dir):
-    """The code blocks that docs/plugin-guide.md announces with "`facing/NAME`:"."""
-    text = (source_dir / "docs/plugin-guide.md").read_text()
-    return dict(re.findall(r"^`facing/([^`]+)`:\n\n```\w+\n(.*?)^```$", text, flags=re.MULTILINE | re.DOTALL))
 
 
 def read_pfm(path):
@@ -28,11 +21,7 @@ def read_pfm(path):
 
 
 def test_the_guide_shows_the_example(source_dir):
-    files = guide_files(source_dir)
-    example = source_dir / "examples/facing"
-    assert set(files) == {path.name for path in example.iterdir() if path.name != "README.md"}
-    for name, text in files.items():
-        assert text == (example / name).read_text(), f"docs/plugin-guide.md and examples/facing/{name} differ"
+    check_example(source_dir, "plugin-guide.md", "facing")
 
 
 @pytest.fixture(scope="module")
@@ -40,7 +29,7 @@ def outside(source_dir, installed, tmp_path_factory):
     """The guide's plugin, built against an installed Lampyris with nothing of this tree but the guide."""
     folder = tmp_path_factory.mktemp("outside")
     (folder / "lampyris").symlink_to(installed)
-    write_files(folder / "facing", guide_files(source_dir))
+    write_files(folder / "facing", guide_files(source_dir, "plugin-guide.md", "facing"))
     configure(folder / "facing", installed, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release")
     build(folder / "facing")
     return folder

@@ -1,5 +1,6 @@
 """Builds plugins outside of the tree, against an installed Lampyris."""
 
+import re
 import subprocess
 
 # A photon map that tests every photon.
@@ -78,3 +79,18 @@ def configure(folder, installed, *options):
 
 def build(folder):
     checked("cmake", "--build", folder / "build")
+
+
+def guide_files(source_dir, page, folder):
+    """The code blocks that a guide in docs/ announces with "`FOLDER/NAME`:", by name."""
+    text = (source_dir / "docs" / page).read_text()
+    return dict(re.findall(rf"^`{folder}/([^`]+)`:\n\n```\w+\n(.*?)^```$", text, flags=re.MULTILINE | re.DOTALL))
+
+
+def check_example(source_dir, page, folder):
+    """The guide shows what examples/FOLDER has."""
+    files = guide_files(source_dir, page, folder)
+    example = source_dir / "examples" / folder
+    assert set(files) == {path.name for path in example.iterdir() if path.name != "README.md"}
+    for name, text in files.items():
+        assert text == (example / name).read_text(), f"docs/{page} and examples/{folder}/{name} differ"
