@@ -19,7 +19,7 @@ INTEGRATORS = {
         '"string function" "disk" "string filename" "a" "string imagefilename" "b" "bool skipbad" false',
     ),
     "ambientocclusion": ("ao", '"bool cossample" false "float maxdistance" 0.5'),
-    "bdpt": ("path", '"integer maxdepth" 2 "bool visualizestrategies" true "bool visualizeweights" true'),
+    "bdpt": ("bdpt", '"integer maxdepth" 2 "bool visualizestrategies" true "bool visualizeweights" true'),
     "mlt": (
         "path",
         '"integer maxdepth" 2 "integer bootstrapsamples" 7 "integer chains" 7 "integer mutationsperpixel" 7'

@@ -3,7 +3,7 @@
 //
 // False alarms: each test compares blocks of pixels, with a total rate of 1e-6 per image by Sidak's correction, at fixed seeds. Power: a
 // factor wrong by 5 % in half of the picture is more than eight standard errors of its mean.
-#include "support/runs.h"
+#include "support/blocks.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -16,44 +16,6 @@
 
 namespace lampyris::test {
 namespace {
-
-// A block's mean and the variance of that mean. Pixels are taken as independent: light paths add to a pixel as a Poisson process
-// does, and to its neighbours by other vertices.
-struct Block {
-    double mean = 0, variance = 0;
-};
-Block block(const Rendered& image, int x0, int y0, int x1, int y1) {
-    Block b;
-    const double count = double(x1 - x0) * (y1 - y0);
-    for (int y = y0; y < y1; ++y)
-        for (int x = x0; x < x1; ++x)
-            b.mean += image.luminance(x, y) / count, b.variance += image.luminance_variance(x, y) / (count * count);
-    return b;
-}
-
-void expect_same(const Rendered& light, const Rendered& path, int size, const std::string& name) {
-    ASSERT_EQ(light.width, path.width);
-    ASSERT_EQ(light.height, path.height);
-    const int columns = (light.width + size - 1) / size, rows = (light.height + size - 1) / size;
-    const double threshold = normal_threshold(kAlpha / (columns * rows + 1));
-    const auto compare = [&](const Block& a, const Block& b, const std::string& where) {
-        // 1e-6: pixels without variance, such as those of an empty background.
-        const double error = std::sqrt(a.variance + b.variance) + 1e-6;
-        EXPECT_LT(std::abs(a.mean - b.mean), threshold * error)
-            << where << ": light " << a.mean << ", path " << b.mean << ", standard error " << error;
-    };
-    for (int j = 0; j < rows; ++j)
-        for (int i = 0; i < columns; ++i) {
-            const int x1 = std::min((i + 1) * size, light.width), y1 = std::min((j + 1) * size, light.height);
-            compare(block(light, i * size, j * size, x1, y1), block(path, i * size, j * size, x1, y1),
-                    fmt::format("{}, block {} {}", name, i, j));
-        }
-    compare(block(light, 0, 0, light.width, light.height), block(path, 0, 0, light.width, light.height), name);
-    if (testing::Test::HasFailure()) {
-        save_failure("light_" + name_of(name), light.image);
-        save_failure("light_" + name_of(name) + "_path", path.image);
-    }
-}
 
 class LightTracing : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Backends, LightTracing, testing::ValuesIn(usable_backends()),
@@ -124,7 +86,8 @@ TEST_P(LightTracing, SeesWhatEveryCameraSees) {
         settings.integrator = "path:maxdepth=3";
         settings.backend = "cpu";
         settings.samples = 256;
-        expect_same(light, render_text(text, settings), 8, std::string("camera ") + view.name + " " + GetParam());
+        expect_same_blocks(light, render_text(text, settings), 8,
+                           std::string("camera ") + view.name + " " + GetParam());
     }
 }
 
@@ -158,7 +121,7 @@ TEST_P(LightTracing, AgreesWithPathTracing) {
         settings.integrator = "path:maxdepth=6";
         settings.backend = "cpu";
         settings.samples = 256;
-        expect_same(light, render_text(text, settings, folder), 12, std::string(name) + " " + GetParam());
+        expect_same_blocks(light, render_text(text, settings, folder), 12, std::string(name) + " " + GetParam());
     }
 }
 

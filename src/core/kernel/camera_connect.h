@@ -14,6 +14,21 @@ struct CameraConnection {
     float importance;
 };
 
+// CameraConnection::importance, for a point `distance` away; `stretch` is the length |M d| of camera_connect. Times the
+// geometric cosine at the point, it is the density per area (1/m^2) with which a pixel's camera ray, whose film point is
+// uniform in the pixel, hits the surface there.
+FN float camera_importance(float stretch, float distance) {
+    CameraRecord camera = scene[0].camera;
+    float pixel = abs(camera.screen.z * camera.screen.w) * camera.volume;
+    return camera.kind == CAMERA_ORTHOGRAPHIC ? stretch / pixel : stretch * sqr(stretch / distance) / pixel;
+}
+
+// The same, for a camera ray in the unit direction w that hits a point `distance` from its origin.
+FN float camera_ray_importance(vec3 w, float distance) {
+    // w = M d / |M d|, and d.z = 1.
+    return camera_importance(1.0f / dot3(vec3(scene[0].camera.from2), w), distance);
+}
+
 // False if the camera cannot see p: it lies behind the lens, or in its plane.
 //
 // A ray has the camera-space direction d = (x, y, 1), where one pixel covers the area A = |screen.z screen.w| of the plane z = 1,
@@ -47,9 +62,7 @@ FN bool camera_connect(vec3 p, vec2 u_lens, OUT(CameraConnection) c) {
     c.distance = length_of(way);
     if (!(c.distance > 0.0f)) return false;
     c.wi = way / c.distance;
-    float stretch = length_of(transform_vector(camera.to0, camera.to1, camera.to2, d));
-    float pixel = abs(camera.screen.z * camera.screen.w) * camera.volume;
-    c.importance = camera.kind == CAMERA_ORTHOGRAPHIC ? stretch / pixel : stretch * sqr(stretch / c.distance) / pixel;
+    c.importance = camera_importance(length_of(transform_vector(camera.to0, camera.to1, camera.to2, d)), c.distance);
     return true;
 }
 

@@ -11,6 +11,13 @@ struct Emission {
     Spectrum power;
     uint light;
     uint medium;  // in which the photon starts
+    // For methods that weigh paths from both ends:
+    vec3 position;  // on the light; undefined for lights at infinity
+    vec3 ng;        // unit normal of an area light there
+    float
+        place_pdf;  // of the light and the point: per area; at infinity of the light and the direction: per solid angle;
+                    // lights at a point and distant lights: of the light alone
+    float direction_pdf;  // of the direction: per solid angle; at infinity, of the point of the disk: per area
 };
 
 // Random numbers that a photon's start uses: one for the light, one for the side that emits, two for the position, two
@@ -32,42 +39,59 @@ FN bool emit_from_area(uint index, float u_side, vec2 u_place, vec2 u_direction,
     AreaSample place;
     if (!sample_light_area(light, u_place, place)) return false;
     vec3 local = sample_cosine_hemisphere(u_direction);
-    float sides = 1.0f;
-    if ((light.flags & LIGHT_TWO_SIDED) != 0u) {
-        sides = 2.0f;
-        if (u_side < 0.5f) local.z = -local.z;
-    }
+    float sides = light_sides(light);
+    if (sides == 2.0f && u_side < 0.5f) local.z = -local.z;
     e.direction = unit(to_world(frame_from_z(area_emission_side(index, place.ng)), local));
     Spectrum radiance = area_emission(index, place.position, place.ng, place.uv, e.direction);
     if (HAS(EFFECT_ALPHA)) radiance = radiance * light_alpha(light, place.position, place.ng, place.uv);
     e.power = radiance * (PI * sides / (place.pdf * light.choice_probability));
     e.origin = offset_origin(place.position, place.error, place.ng, e.direction);
     e.medium = light_medium(index, place.ng, e.direction);
+    e.position = place.position;
+    e.ng = place.ng;
+    e.place_pdf = place.pdf * light.choice_probability;
+    e.direction_pdf = abs(local.z) * (INV_PI / sides);
     return true;
+}
+
+// Density (1/sr) of a direction that is sampled uniformly over a projection light's image at z = 1, of which an area dA has
+// the solid angle cos^3 dA; d2: squared length of the direction with z = 1 in light space.
+FN float projection_pdf(IN(LightRecord) light, float d2, vec3 direction) {
+    vec4 window = projection_window(light);
+    return d2 * sqrt(d2) / ((window.z - window.x) * (window.w - window.y)) *
+           solid_angle_stretch(transforms[light.transform], direction);
+}
+
+// Density (1/sr) with which photons of a light at a point leave in a direction into which it shines.
+FN float point_emission_pdf(IN(LightRecord) light, vec3 direction) {
+    if (light.kind == LIGHT_SPOT) return pdf_uniform_cone(1.0f - spot_cos_end(light));
+    if (!HAS(EFFECT_PROJECTION_LIGHTS) || light.kind != LIGHT_PROJECTION) return pdf_uniform_sphere();
+    TransformRecord m = transforms[light.transform];
+    vec3 local = transform_vector(m.from0, m.from1, m.from2, direction);
+    return projection_pdf(light, length_squared(local) / sqr(local.z), direction);
 }
 
 FN bool emit_from_point(uint index, vec2 u_place, vec2 u_direction, INOUT(Emission) e) {
     LightRecord light = lights[index];
-    float pdf = pdf_uniform_sphere();
+    e.direction_pdf = pdf_uniform_sphere();
     if (light.kind == LIGHT_SPOT) {
         float one_minus_cos = 1.0f - spot_cos_end(light);
         e.direction = to_world(frame_from_z(spot_axis(light)), sample_uniform_cone(u_direction, one_minus_cos));
-        pdf = pdf_uniform_cone(one_minus_cos);
+        e.direction_pdf = pdf_uniform_cone(one_minus_cos);
     } else if (HAS(EFFECT_PROJECTION_LIGHTS) && light.kind == LIGHT_PROJECTION) {
-        // Uniform over the image at z = 1, of which an area dA has the solid angle cos^3 dA.
         TransformRecord m = transforms[light.transform];
         vec4 window = projection_window(light);
         vec2 p = vec2(lerp_of(u_direction.x, window.x, window.z), lerp_of(u_direction.y, window.y, window.w));
-        float d2 = p.x * p.x + p.y * p.y + 1.0f;
         e.direction = unit(transform_vector(m.to0, m.to1, m.to2, vec3(p.x, p.y, 1.0f)));
-        pdf = d2 * sqrt(d2) / ((window.z - window.x) * (window.w - window.y)) * solid_angle_stretch(m, e.direction);
+        e.direction_pdf = projection_pdf(light, p.x * p.x + p.y * p.y + 1.0f, e.direction);
     } else {
         e.direction = sample_uniform_sphere(u_direction);
     }
     e.direction = unit(e.direction);
-    vec3 position = light_position(light);
-    e.origin = position + point_offset(position, e.direction) * e.direction;
-    e.power = point_light_intensity(light, e.direction) / (pdf * light.choice_probability);
+    e.position = light_position(light);
+    e.origin = e.position + point_offset(e.position, e.direction) * e.direction;
+    e.place_pdf = light.choice_probability;
+    e.power = point_light_intensity(light, e.direction) / (e.direction_pdf * light.choice_probability);
     e.medium = light_medium(index, e.direction, e.direction);
     return true;
 }
@@ -82,6 +106,10 @@ FN bool emit_photon(uint u_choice, float u_side, vec2 u_place, uvec2 u_direction
     uint count = scene[0].light_count;
     e.light = NONE;
     e.medium = MEDIUM_VACUUM;
+    e.position = vec3(0.0f);
+    e.ng = vec3(0.0f, 0.0f, 1.0f);
+    e.place_pdf = 0.0f;
+    e.direction_pdf = 0.0f;
     if (count == 0u) return false;
     e.light = count == 1u ? 0u : find_interval(scene[0].light_cdf, count, cdf_number(u_choice));
     uint kind = lights[e.light].kind;
@@ -97,12 +125,16 @@ FN bool emit_photon(uint u_choice, float u_side, vec2 u_place, uvec2 u_direction
             e.direction = -to_light;
             e.origin = distant_origin(to_light, u_place);
             e.power = radiance * (distant_area() / pdf);
+            e.place_pdf = pdf;
+            e.direction_pdf = 1.0f / distant_area();
         }
     } else if (HAS(EFFECT_DISTANT_LIGHTS) && kind == LIGHT_DISTANT) {
         LightRecord light = lights[e.light];
         e.direction = -light_direction(light);
         e.origin = distant_origin(light_direction(light), u_place);
         e.power = light.emission * (distant_area() / light.choice_probability);
+        e.place_pdf = light.choice_probability;
+        e.direction_pdf = 1.0f / distant_area();
         found = true;
     } else if (HAS(EFFECT_POINT_LIGHTS) || HAS(EFFECT_PROJECTION_LIGHTS)) {
         found = emit_from_point(e.light, u_place, unit_floats(u_direction), e);

@@ -17,6 +17,8 @@ struct LightSample {
     vec3 end;           // end of the shadow ray, outside of the light's surface (shadow_end)
     uint is_delta;      // 1: rays cannot hit this light, although pdf may be a density (LIGHT_PASSED)
     uint light;
+    vec3 position;  // on an area light, and its unit normal there; else undefined
+    vec3 ng;
 };
 
 // ---- Area lights -----------------------------------------------------------------------------------------------------
@@ -53,21 +55,43 @@ FN Spectrum light_emission(IN(Surface) s, vec3 w) {
     return area_emission(s.light, s.position, s.ng, s.uv, w);
 }
 
+// The density with which light_sample(ref_p, ...) samples a point of an area light, which is seen in direction wi.
+FN float area_light_pdf(uint index, vec3 ref_p, vec3 position, vec3 ng, vec3 wi) {
+    LightRecord light = lights[index];
+    float pdf = 0.0f;
+    if (!HAS(EFFECT_QUADRIC_LIGHTS) || light.kind == LIGHT_TRIANGLE) {
+        pdf = pdf_triangle_light(light, ref_p, position, ng, wi);
+    } else if (HAS(EFFECT_BILINEAR) && geometries[light.geometry].kind == GEOMETRY_BILINEAR) {
+        pdf = pdf_bilinear_light(light.geometry, light.primitive, ref_p, position, ng, wi);
+    } else if (HAS(EFFECT_QUADRICS)) {
+        pdf = pdf_quadric_light(light.geometry, ref_p, position, ng, wi);
+    }
+    return pdf * light.choice_probability;
+}
+
 // The density with which light_sample(ref_p, ...) would have sampled s, where a ray from ref_p in direction wi hit the
 // light.
 FN float light_pdf(IN(Surface) s, vec3 ref_p, vec3 wi) {
     if (!HAS(EFFECT_AREA_LIGHTS) || s.light == NONE) return 0.0f;
-    LightRecord light = lights[s.light];
-    float pdf = 0.0f;
-    if (!HAS(EFFECT_QUADRIC_LIGHTS) || light.kind == LIGHT_TRIANGLE) {
-        pdf = pdf_triangle_light(light, ref_p, s.position, s.ng, wi);
-    } else if (HAS(EFFECT_BILINEAR) && geometries[light.geometry].kind == GEOMETRY_BILINEAR) {
-        pdf = pdf_bilinear_light(light.geometry, light.primitive, ref_p, s.position, s.ng, wi);
-    } else if (HAS(EFFECT_QUADRICS)) {
-        pdf = pdf_quadric_light(light.geometry, ref_p, s.position, s.ng, wi);
+    return area_light_pdf(s.light, ref_p, s.position, s.ng, wi);
+}
+
+// The density per area (1/m^2) with which a photon starts at a point of an area light (emission.h). The point is seen
+// from ref_p in direction wi.
+FN float area_emission_pdf(uint index, vec3 ref_p, vec3 position, vec3 ng, vec3 wi) {
+    LightRecord light = lights[index];
+    float pdf = light.inverse_area;
+    if (HAS(EFFECT_BILINEAR) && light.kind != LIGHT_TRIANGLE && geometries[light.geometry].kind == GEOMETRY_BILINEAR) {
+        pdf = pdf_bilinear_light(light.geometry, light.primitive, ref_p, position, ng, wi) * abs_dot(ng, wi) /
+              length_squared(position - ref_p);
+    } else if (HAS(EFFECT_QUADRICS) && light.kind != LIGHT_TRIANGLE) {
+        pdf = pdf_quadric_area(light.geometry, position);
     }
     return pdf * light.choice_probability;
 }
+
+// The number of sides on which an area light emits.
+FN float light_sides(IN(LightRecord) light) { return (light.flags & LIGHT_TWO_SIDED) != 0u ? 2.0f : 1.0f; }
 
 // A masked light's opacity: the probability that a ray hits it there. A light that all rays pass emits all of its
 // light, as in pbrt.
@@ -108,6 +132,8 @@ FN bool sample_area_light(uint index, vec3 ref_p, vec2 u, INOUT(LightSample) s) 
     if (!found) return false;
     s.wi = shape.wi;
     s.distance = shape.distance;
+    s.position = shape.position;
+    s.ng = shape.ng;
     s.end = shadow_end(shape.position, shape.offset, shape.ng, shape.wi, shape.distance);
     s.pdf = shape.pdf * light.choice_probability;
     s.radiance = area_emission(index, shape.position, shape.ng, shape.uv, -shape.wi);
@@ -181,6 +207,8 @@ FN bool light_sample(vec3 ref_p, uint u_choice, uvec2 u_place, OUT(LightSample) 
     s.distance = INFINITE_DISTANCE;
     s.end = vec3(0.0f);
     s.is_delta = 0u;
+    s.position = vec3(0.0f);
+    s.ng = vec3(0.0f, 0.0f, 1.0f);
     uint count = scene[0].light_count;
     s.light = NONE;
     if (count == 0u) return false;

@@ -327,6 +327,14 @@ FN bool sample_quadric_light(uint geometry, vec3 ref_p, vec2 u, OUT(ShapeSample)
     return shape_sample_from_area(ref_p, place.pdf, s);
 }
 
+// Density per area at a point of the quadric.
+FN float pdf_quadric_area(uint geometry, vec3 position) {
+    GeometryRecord g = geometries[geometry];
+    TransformRecord m = transforms[g.transform];
+    vec3 p = transform_point(m.from0, m.from1, m.from2, position);
+    return quadric_pdf_area(g, m, length_of(quadric_set_normal(geometry, p)));
+}
+
 FN float pdf_quadric_light(uint geometry, vec3 ref_p, vec3 position, vec3 ng, vec3 wi) {
     GeometryRecord g = geometries[geometry];
     TransformRecord m = transforms[g.transform];
@@ -338,9 +346,7 @@ FN float pdf_quadric_light(uint geometry, vec3 ref_p, vec3 position, vec3 ng, ve
             return pdf_uniform_cone(one_minus_cos_max) * sphere_cone_stretch(m, stretch);
         }
     }
-    vec3 p = transform_point(m.from0, m.from1, m.from2, position);
-    float pdf_area = quadric_pdf_area(g, m, length_of(quadric_set_normal(geometry, p)));
-    return pdf_of_area(pdf_area, length_squared(position - ref_p), dot3(ng, wi));
+    return pdf_of_area(pdf_quadric_area(geometry, position), length_squared(position - ref_p), dot3(ng, wi));
 }
 
 // ---- Bilinear patches ------------------------------------------------------------------------------------------------

@@ -141,11 +141,11 @@ FN Vertex vertex_at(INOUT(Surface) s, vec3 direction) {
 
 FN Vertex walk_vertex(IN(Walk) w, INOUT(Surface) s) { return vertex_at(s, w.ray.direction); }
 
-// The cosine for f(wo, wi) if a vertex of a walk from a light is connected to a point in the unit direction `onward`:
-// |wi.Ns wo.Ng| / |wi.Ng|, with wi towards the light and wo onward, since shading normals are not symmetric (Veach 1997,
-// equation 5.19). 0 if the light grazes the surface.
-FN float importance_cosine(IN(Walk) w, IN(Surface) s, IN(Vertex) v, vec3 onward) {
-    float towards = abs_dot(w.ray.direction, s.ng);
+// The cosine for f(wo, wi) if a vertex of a walk from a light, which arrived there in direction `arriving`, is connected to
+// a point in the unit direction `onward`: |wi.Ns wo.Ng| / |wi.Ng|, with wi towards the light and wo onward, since shading
+// normals are not symmetric (Veach 1997, equation 5.19). 0 if the light grazes the surface.
+FN float importance_cosine(vec3 arriving, IN(Surface) s, IN(Vertex) v, vec3 onward) {
+    float towards = abs_dot(arriving, s.ng);
     return towards > 0.0f ? abs(v.wo.z) * abs_dot(onward, s.ng) / towards : 0.0f;
 }
 

@@ -18,7 +18,8 @@ constexpr PbrtParameter kRegularize{"regularize", kBool, "false", "", "path regu
 constexpr std::string_view kBothAreSampled = "lights and directions are both sampled";
 constexpr std::string_view kNoMutations = "samples are independent of each other, as many as the Sampler says";
 constexpr std::string_view kNoFunction = "no function is sampled";
-constexpr std::string_view kNoStrategies = "there are no strategies to tell apart";
+constexpr std::string_view kNoStrategies =
+    "one strategy alone is shown by --set integrator.s and integrator.t, without weights by integrator.weights=none";
 
 constexpr PbrtParameter kDepthAlone[] = {kMaxDepth};
 constexpr PbrtParameter kOfPath[] = {kMaxDepth, kLightSampler, kRegularize};
@@ -50,7 +51,7 @@ constexpr PbrtParameter kOfFunction[] = {{"function", kString, "step", "", kNoFu
 
 constexpr PbrtIntegrator kIntegrators[] = {
     {"ambientocclusion", "ao", "the share of a white sky that each point sees", false, kOfAo},
-    {"bdpt", "path", "paths start at the camera alone: the same image, with other noise", false, kOfBdpt},
+    {"bdpt", "bdpt", "", true, kOfBdpt},
     {"function", "path", "pbrt-v4's measures a sampler's error and renders no image; this renders the scene", false,
      kOfFunction},
     {"lightpath", "light", "lamps and the sky are seen directly, too; pbrt-v4 leaves them out", true, kDepthAlone},

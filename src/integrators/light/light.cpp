@@ -1,14 +1,10 @@
-#include "core/base/error.h"
 #include "core/render/integrator.h"
+#include "integrators/bidirectional/bidirectional_host.h"
 #include "integrators/light/light_host.h"
 #include "integrators/light/light_params.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
-#include <limits>
-#include <numbers>
 
 namespace lampyris {
 namespace {
@@ -19,15 +15,6 @@ constexpr const char* kPixels = "integrators/light/light_pixels.kernel.h";
 // Light paths of one run of the kernel, whose rays a word counts.
 constexpr uint32_t kPart = 1u << 22;
 
-// The unit of splats: 2^-24 of the radiance that a diffuse surface on the scene's bounding sphere shows if it
-// receives the lights' whole power. 64 bits hold 5e11 times that.
-float quantum_of(const Scene& scene) {
-    const double radius = double(scene.record.bounds.w);
-    const double radiance =
-        double(scene.record.light_power) / (4.0 * std::numbers::pi * std::numbers::pi * radius * radius);
-    return float(std::clamp(radiance * 0x1p-24, 1e-36, 1e20));
-}
-
 class Light : public Integrator {
  public:
     LightParams params;
@@ -37,20 +24,17 @@ class Light : public Integrator {
         const uint64_t effects = session.scene.effects.mask();
         const uint32_t pixels = session.film.pixel_count();
         const uint32_t full = session.scene.width() * session.scene.height();
-        if (uint64_t(pixels) * kernel::SPLAT_WORDS > std::numeric_limits<uint32_t>::max())
-            throw InputError(fmt::format("error: \"light\" renders at most {} pixels at once; render parts (--crop)",
-                                         std::numeric_limits<uint32_t>::max() / kernel::SPLAT_WORDS));
         kernel::LightPass pass{};
         pass.seed = session.seed;
         pass.sampler_kind = session.sampler;
         pass.paths = params.lightpaths > 0 ? uint32_t(params.lightpaths) : full;
         pass.maxdepth = params.maxdepth;
-        pass.quantum = quantum_of(session.scene);
+        pass.quantum = splat_quantum(session.scene);
         pass.brightness = float(double(pass.paths) / double(full));
         const KernelHandle paths = device.compile(kPaths, effects), finish = device.compile(kPixels, effects);
         const BufferHandle window = device.create_buffer(sizeof(kernel::FilmWindow), "film window");
         const BufferHandle passes = device.create_buffer(sizeof pass, "pass");
-        const BufferHandle splats = device.create_buffer(size_t(pixels) * kernel::SPLAT_WORDS * 4, "splats");
+        const BufferHandle splats = device.create_buffer(splat_bytes(pixels, "light"), "splats");
         const BufferHandle rays = device.create_buffer(4, "rays of light paths");
         const std::array<NamedBuffer, 4> of_paths{
             {{"window", window}, {"passes", passes}, {"splats", splats}, {"rays", rays}}};

@@ -5,7 +5,6 @@
 
 namespace lampyris::kernel {
 #define CONST inline constexpr
-#include "core/kernel/splat_layout.h"
 #include "integrators/light/light_layout.h"
 #undef CONST
 }  // namespace lampyris::kernel

@@ -1,0 +1,79 @@
+// Follows a path from a light, connects each vertex to the camera (strategies t = 1), and stores it for the camera paths.
+#include "core/kernel/scene.h"
+
+#include "core/kernel/film.h"
+#include "integrators/bidirectional/bidirectional_layout.h"
+
+BUFFER_RO(0, FilmWindow, window)
+BUFFER_RO(1, BidirectionalPass, passes)
+BUFFER_RW(2, uint, splats)
+BUFFER_RW(3, uint, counters)
+BUFFER_RW(4, LightVertexRecord, vertices)
+BUFFER_RW(5, uint, last_vertices)  // of each path of this part: slot of the last vertex, or NONE
+
+#include "integrators/bidirectional/lens_connection.h"
+#include "integrators/bidirectional/light_vertex.h"
+#include "integrators/bidirectional/subpath.h"
+
+// Adds to the picture what the light path shows at the vertex. True if the camera sees it.
+FN bool splat_vertex(IN(Subpath) path, IN(Surface) s, IN(Vertex) v, IN(Sampler) numbers, uint dimension) {
+    LensConnection c;
+    if (!lens_connect(s, numbers, dimension, c)) return false;
+    float forward;
+    float reverse;
+    Spectrum f = bsdf_eval_pdfs(v.bsdf, v.wo, to_local(v.frame, c.camera.wi), TRANSPORT_IMPORTANCE, forward, reverse);
+    if (is_black(f)) return false;
+    Spectrum through = scene_transmittance(s, c.camera.wi, c.camera.distance, c.camera.end, path.walk.medium);
+    if (is_black(through)) return false;
+    BidirectionalPass pass = passes[0];
+    float cosine = importance_cosine(path.walk.ray.direction, s, v, c.camera.wi);
+    float from_camera = mis_area_density(c.camera.importance * abs_dot(c.camera.wi, s.ng)) / lens_samples();
+    float weight = mis_weight(mis_end(path.mis, from_camera, reverse, heuristic()));
+    Spectrum value = path.walk.throughput * f * through * (cosine * c.camera.importance * weight);
+    lens_splat(c, value, float(pass.paths), pass.brightness, pass.quantum, numbers, dimension);
+    return true;
+}
+
+KERNEL(bdpt_light_paths) {
+    BidirectionalPass pass = passes[0];
+    uint slot = NONE;
+    uint rank = 0u;
+    uint splatted = 0u;
+    Sampler numbers = light_path_numbers(index, pass.number, pass.seed, pass.sampler_kind);
+    Emission start;
+    if (light_path_emits(numbers, start)) {
+        Subpath path = light_path_begin(start, pass.maxdepth);
+        Surface s;
+        while (walk_next(path.walk, s)) {
+            if (HAS(EFFECT_MEDIUM) && is_black(path.walk.throughput)) break;
+            if (walk_crosses(path.walk, s)) continue;
+            if (path.walk.depth >= path.walk.maxdepth) break;
+            if (path.walk.depth == 0) light_path_meets_first(path, start, s);
+            subpath_arrives(path, s);
+            Vertex v = walk_vertex(path.walk, s);
+            uint dimension = light_vertex_dimension(path.walk);
+            int depth = path.walk.depth + 1;
+            if (!bsdf_is_specular(v.bsdf)) {
+                if (pass.splats != 0u && strategy_wanted(depth + 1, 1) && splat_vertex(path, s, v, numbers, dimension))
+                    splatted += 1u;
+                if (depth < pass.maxdepth && pass.connections != 0) {
+                    uint place = ATOMIC_ADD_U32(counters[LIGHT_VERTICES], 1u);
+                    rank += 1u;
+                    if (place < pass.capacity)
+                        vertices[place] = light_vertex_record(path.walk.ray, s, path.walk.throughput, path.mis,
+                                                              uint(depth), rank, slot);
+                    slot = place;
+                }
+            }
+            BsdfSample next;
+            float density;
+            float u_lobe = light_path_u_lobe(v, numbers, dimension);
+            vec2 u_direction = sample_2d_at(numbers, dimension + LIGHT_DIRECTION);
+            if (!bsdf_sample_density(v.bsdf, v.wo, u_lobe, u_direction, TRANSPORT_IMPORTANCE, next, density)) break;
+            if (!subpath_leaves(path, s, v, next, density, 0, numbers, dimension + LIGHT_ROULETTE)) break;
+        }
+    }
+    last_vertices[index - pass.first_path] = slot;
+    ATOMIC_ADD_U32(counters[LIGHT_RAYS], traced_rays[0]);
+    if (splatted != 0u) ATOMIC_ADD_U32(counters[LIGHT_SPLATS], splatted);
+}

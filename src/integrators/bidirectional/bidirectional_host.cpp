@@ -1,0 +1,28 @@
+#include "integrators/bidirectional/bidirectional_host.h"
+
+#include "core/base/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+
+namespace lampyris {
+
+float splat_quantum(const Scene& scene) {
+    const double radius = double(scene.record.bounds.w);
+    const double radiance =
+        double(scene.record.light_power) / (4.0 * std::numbers::pi * std::numbers::pi * radius * radius);
+    return float(std::clamp(radiance * 0x1p-24, 1e-36, 1e20));
+}
+
+size_t splat_bytes(uint32_t pixels, const char* integrator) {
+    constexpr uint32_t kMost = std::numeric_limits<uint32_t>::max() / kernel::SPLAT_WORDS;
+    if (pixels > kMost)
+        throw InputError(
+            fmt::format("error: \"{}\" renders at most {} pixels at once; render parts (--crop)", integrator, kMost));
+    return size_t(pixels) * kernel::SPLAT_WORDS * 4;
+}
+
+}  // namespace lampyris

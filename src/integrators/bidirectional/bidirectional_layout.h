@@ -1,0 +1,52 @@
+// What the kernels of bidirectional methods share.
+#ifndef LAMPYRIS_BIDIRECTIONAL_LAYOUT
+#define LAMPYRIS_BIDIRECTIONAL_LAYOUT
+
+// A vertex of a light path to which camera paths connect: the last ray and the primitive that it hit, from which the surface
+// is computed again, and what the path carries. The vertices of a path are linked from the last to the first.
+struct LightVertexRecord {  // light_vertex.h has functions that unpack it
+    uvec4 origin;           // of the ray (bits of floats); w: instance
+    uvec4 direction;        // bits of floats; w: geometry
+    uvec4 more;             // primitive, slot of the previous vertex or NONE, depth << 16 | rank, MisSums::a (bits)
+    vec4 throughput;        // power that arrives, over the density of the path (W); w: MisSums::d
+};
+
+// One pass, or a part of it: the light paths first_path to first_path + part_paths - 1, and the camera paths that connect to
+// them.
+struct BidirectionalPass {
+    uint number;
+    uint seed;
+    uint sampler_kind;  // SAMPLER_*
+    uint paths;         // from lights, in the pass
+    uint first_path;
+    uint part_paths;
+    uint capacity;  // light vertices that can be stored
+    uint splats;    // 1: light paths are connected to the camera; 0: not again
+    int maxdepth;
+    int rrdepth;
+    int connections;  // of a camera vertex with its light path; negative: to all vertices
+    uint weights;     // WEIGHTS_*
+    int only_light;   // strategy to render, as counts of vertices; negative: any
+    int only_camera;
+    float quantum;     // of splats (splat.h), in units of radiance
+    float brightness;  // a splat times this is about the radiance of a pixel: what the sensor's clamp compares
+    float
+        film_density;  // of the film points of a pixel's camera rays, per pixel: above 1 if the pixel filter is narrower
+    float unused0;
+    float unused1;
+    float unused2;
+};
+
+CONST uint WEIGHTS_BALANCE = 0u;
+CONST uint WEIGHTS_POWER = 1u;
+CONST uint WEIGHTS_NONE = 2u;  // each strategy as if it were alone
+
+// Words of `counters`.
+CONST uint LIGHT_VERTICES = 0u;  // stored, including those that did not fit
+CONST uint LIGHT_RAYS = 1u;
+CONST uint LIGHT_SPLATS = 2u;  // connections to the camera that were unoccluded
+CONST uint CONNECTIONS_TRIED = 3u;
+CONST uint CONNECTIONS_VISIBLE = 4u;
+CONST uint BIDIRECTIONAL_COUNTERS = 8u;
+
+#endif
