@@ -14,7 +14,7 @@ BUFFER_RW(6, vec4, seen)  // of each pixel: what its camera path contributes
 
 #include "core/kernel/camera_connect.h"
 #include "integrators/bidirectional/light_vertex.h"
-#include "integrators/bidirectional/subpath.h"
+#include "integrators/bidirectional/connect.h"
 
 // Dimensions of a vertex, as those of `path`, and one for the choice of vertices to connect to.
 CONST uint BDPT_DIRECTION_AND_LIGHT = 0u;
@@ -23,71 +23,6 @@ CONST uint BDPT_LOBE = 5u;
 CONST uint BDPT_ROULETTE = 6u;
 CONST uint BDPT_CONNECTIONS = 7u;
 CONST uint BDPT_VERTEX_DIMENSIONS = 8u;
-
-PRIVATE(uint, connections_tried, 1)
-PRIVATE(uint, connections_visible, 1)
-
-// Next-event estimation: strategy s = 1.
-FN Spectrum connect_to_light(IN(Subpath) path, IN(Surface) s, IN(Vertex) v, uint u_choice, uvec2 u) {
-    LightSample light;
-    if (!light_sample(s.position, u_choice, u, light)) return Spectrum(0.0f);
-    vec3 wi = to_local(v.frame, light.wi);
-    float forward;
-    float reverse;
-    Spectrum f = bsdf_eval_pdfs(v.bsdf, v.wo, wi, TRANSPORT_RADIANCE, forward, reverse);
-    if (is_black(f)) return Spectrum(0.0f);
-    Spectrum through = scene_transmittance(s, light.wi, light.distance, light.end, path.walk.medium);
-    if (is_black(through)) return Spectrum(0.0f);
-    // The density of emission over that of this strategy: both the cosine at the light and the squared distance cancel if it has a
-    // surface.
-    LightRecord record = lights[light.light];
-    float emitted;
-    if (HAS(EFFECT_AREA_LIGHTS) && record.kind <= LIGHT_GEOMETRY) {
-        emitted = mis_area_density(area_emission_pdf(light.light, s.position, light.position, light.ng, light.wi)) *
-                  INV_PI / (light_sides(record) * light.pdf);
-    } else if (light.distance < INFINITE_DISTANCE) {
-        emitted = point_emission_pdf(record, -light.wi) / mis_area(sqr(light.distance));
-    } else {
-        emitted = mis_area_density(1.0f / distant_area());
-    }
-    uint h = heuristic();
-    float others = mis_end(path.mis, emitted * abs_dot(light.wi, s.ng), reverse, h);
-    if (light.is_delta == 0u) others += mis_term(forward / light.pdf, h);
-    return path.walk.throughput * f * light.radiance * through * (abs(wi.z) * mis_weight(others) / light.pdf);
-}
-
-// Connection to a vertex of a light path: strategies with s, t >= 2.
-FN Spectrum connect_to_vertex(IN(Subpath) path, IN(Surface) s, IN(Vertex) v, IN(LightVertexRecord) y) {
-    Surface at_y;
-    Vertex vertex_y = light_vertex(y, at_y);
-    vec3 way = at_y.position - s.position;
-    float d2 = length_squared(way);
-    if (!(d2 > 0.0f) || !is_finite(d2)) return Spectrum(0.0f);
-    float distance = sqrt(d2);
-    vec3 w = way / distance;
-    vec3 wi = to_local(v.frame, w);
-    float forward;
-    float reverse;
-    Spectrum f = bsdf_eval_pdfs(v.bsdf, v.wo, wi, TRANSPORT_RADIANCE, forward, reverse);
-    if (is_black(f)) return Spectrum(0.0f);
-    float forward_y;
-    float reverse_y;
-    Spectrum f_y = bsdf_eval_pdfs(vertex_y.bsdf, vertex_y.wo, to_local(vertex_y.frame, -w), TRANSPORT_IMPORTANCE,
-                                  forward_y, reverse_y);
-    if (is_black(f_y)) return Spectrum(0.0f);
-    connections_tried[0] += 1u;
-    vec3 end = origin_beyond(at_y.position, at_y.way + (SHADOW_ROUNDING * distance) * at_y.ng, -w);
-    Spectrum through = scene_transmittance(s, w, distance, end, path.walk.medium);
-    if (is_black(through)) return Spectrum(0.0f);
-    connections_visible[0] += 1u;
-    float inverse_d2 = 1.0f / mis_area(d2);
-    uint h = heuristic();
-    float others = mis_end(light_vertex_sums(y), forward * abs_dot(w, at_y.ng) * inverse_d2, reverse_y, h) +
-                   mis_end(path.mis, forward_y * abs_dot(w, s.ng) * inverse_d2, reverse, h);
-    float cosine_y = importance_cosine(light_vertex_direction(y), at_y, vertex_y, -w);
-    return path.walk.throughput * f * f_y * through * light_vertex_throughput(y) *
-           (abs(wi.z) * cosine_y * mis_weight(others) / d2);
-}
 
 // Connects to all vertices of the light path that leave the path at most maxdepth scattering vertices, or to `connections` of them,
 // each with the same probability.
@@ -110,7 +45,12 @@ FN Spectrum connect_to_path(IN(Subpath) path, IN(Surface) s, IN(Vertex) v, uint 
         }
         // Systematic sampling: of `count` vertices, those at which floor(rank chance + u) grows.
         if (chance < 1.0f && floor(float(rank) * chance + u) == floor(float(rank - 1u) * chance + u)) continue;
-        sum += connect_to_vertex(path, s, v, y);
+        LightEnd end;
+        end.vertex = light_vertex(y, end.surface);
+        end.direction = light_vertex_direction(y);
+        end.throughput = light_vertex_throughput(y);
+        end.mis = light_vertex_sums(y);
+        sum += connect_to_vertex(path, s, v, end);
     }
     return sum / chance;
 }

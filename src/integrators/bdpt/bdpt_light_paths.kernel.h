@@ -13,23 +13,15 @@ BUFFER_RW(5, uint, last_vertices)  // of each path of this part: slot of the las
 
 #include "integrators/bidirectional/lens_connection.h"
 #include "integrators/bidirectional/light_vertex.h"
-#include "integrators/bidirectional/subpath.h"
+#include "integrators/bidirectional/connect.h"
 
 // Adds to the picture what the light path shows at the vertex. True if the camera sees it.
 FN bool splat_vertex(IN(Subpath) path, IN(Surface) s, IN(Vertex) v, IN(Sampler) numbers, uint dimension) {
     LensConnection c;
     if (!lens_connect(s, numbers, dimension, c)) return false;
-    float forward;
-    float reverse;
-    Spectrum f = bsdf_eval_pdfs(v.bsdf, v.wo, to_local(v.frame, c.camera.wi), TRANSPORT_IMPORTANCE, forward, reverse);
-    if (is_black(f)) return false;
-    Spectrum through = scene_transmittance(s, c.camera.wi, c.camera.distance, c.camera.end, path.walk.medium);
-    if (is_black(through)) return false;
+    Spectrum value = connect_to_lens(path, s, v, c.camera);
+    if (is_black(value)) return false;
     BidirectionalPass pass = passes[0];
-    float cosine = importance_cosine(path.walk.ray.direction, s, v, c.camera.wi);
-    float from_camera = mis_area_density(c.camera.importance * abs_dot(c.camera.wi, s.ng)) / lens_samples();
-    float weight = mis_weight(mis_end(path.mis, from_camera, reverse, heuristic()));
-    Spectrum value = path.walk.throughput * f * through * (cosine * c.camera.importance * weight);
     lens_splat(c, value, float(pass.paths), pass.brightness, pass.quantum, numbers, dimension);
     return true;
 }
@@ -70,7 +62,7 @@ KERNEL(bdpt_light_paths) {
             float u_lobe = light_path_u_lobe(v, numbers, dimension);
             vec2 u_direction = sample_2d_at(numbers, dimension + LIGHT_DIRECTION);
             if (!bsdf_sample_density(v.bsdf, v.wo, u_lobe, u_direction, TRANSPORT_IMPORTANCE, next, density)) break;
-            if (!subpath_leaves(path, s, v, next, density, 0, numbers, dimension + LIGHT_ROULETTE)) break;
+            if (!subpath_leaves(path, s, v, next, density, pass.rrdepth, numbers, dimension + LIGHT_ROULETTE)) break;
         }
     }
     last_vertices[index - pass.first_path] = slot;

@@ -31,6 +31,25 @@ struct Subpath {
     bool no_distance;  // there is none, because the path starts at infinity
 };
 
+// No path, with all members initialised.
+FN Subpath no_subpath() {
+    Subpath path;
+    path.walk.ray = ray_of(vec3(0.0f), vec3(0.0f, 0.0f, 1.0f));
+    path.walk.throughput = Spectrum(0.0f);
+    path.walk.eta_scale = 1.0f;
+    path.walk.transport = TRANSPORT_RADIANCE;
+    path.walk.medium = MEDIUM_VACUUM;
+    path.walk.depth = 0;
+    path.walk.maxdepth = 0;
+    path.walk.passed = 0u;
+    path.walk.escaped = false;
+    path.mis.a = 0.0f;
+    path.mis.d = 0.0f;
+    path.previous = vec3(0.0f);
+    path.no_distance = true;
+    return path;
+}
+
 // The sums as they arrive at s, the next vertex.
 FN void subpath_arrives(INOUT(Subpath) path, IN(Surface) s) {
     float d2 = path.no_distance ? 1.0f : mis_area(length_squared(s.position - path.previous));

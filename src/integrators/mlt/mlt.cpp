@@ -1,0 +1,197 @@
+#include "core/render/integrator.h"
+#include "integrators/bidirectional/bidirectional_host.h"
+#include "integrators/mlt/mlt_host.h"
+#include "integrators/mlt/mlt_params.h"
+#include "integrators/path/path_params.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace lampyris {
+namespace {
+
+constexpr const char* kChains = "integrators/mlt/mlt_chains.kernel.h";
+constexpr const char* kPixels = "integrators/mlt/mlt_pixels.kernel.h";
+
+constexpr uint32_t kLeastSeeds = 16384;
+// Mutations of a chain in one run of the kernel: few, so that no run is long.
+constexpr uint32_t kIterations = 32;
+
+// The seeds at which chains start, in proportion to their luminance: `count` equally spaced points, moved by u in [0, 1), of the
+// luminances laid end to end (systematic resampling).
+std::vector<uint32_t> resample(const std::vector<float>& luminances, double sum, uint32_t count, double u) {
+    std::vector<uint32_t> chosen(count);
+    double below = 0.0;
+    uint32_t seed = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        const double point = (i + u) / count * sum;
+        while (seed + 1 < luminances.size() && (luminances[seed] <= 0.0f || below + double(luminances[seed]) <= point))
+            below += double(luminances[seed++]);
+        chosen[i] = seed;
+    }
+    // Rounding may leave the last points behind the last seed that is not black.
+    uint32_t last = 0;
+    for (uint32_t i = 0; i < luminances.size(); ++i)
+        if (luminances[i] > 0.0f) last = i;
+    for (uint32_t& seed_of_chain : chosen) seed_of_chain = std::min(seed_of_chain, last);
+    return chosen;
+}
+
+class MltRender {
+ public:
+    MltRender(RenderSession& session, const MltParams& params)
+        : session_(session),
+          device_(session.device),
+          pixels_(session.film.pixel_count()),
+          chains_(device_.compile(kChains, session.scene.effects.mask())),
+          finish_(device_.compile(kPixels, session.scene.effects.mask())) {
+        const kernel::CameraRecord& camera = session.scene.record.camera;
+        const double full = double(session.scene.width()) * double(session.scene.height());
+        constexpr double kMost = std::numeric_limits<uint32_t>::max() / 2;
+        const auto wanted = uint32_t(std::clamp(std::ceil(full * double(params.mutations)), 1.0, kMost));
+        mlt_.depths = uint32_t(std::max(params.maxdepth - kernel::MLT_LEAST_DEPTH + 1, 0));
+        mlt_.chains = std::min(uint32_t(params.chains), wanted);
+        iterations_ = (wanted + mlt_.chains - 1) / mlt_.chains;
+        seeds_ = params.bootstrap >= 0 ? uint32_t(params.bootstrap) : std::max(wanted / 4, kLeastSeeds);
+        seeds_ = std::max(seeds_ / std::max(mlt_.depths, 1u), 1u) * mlt_.depths;  // the same number for each depth
+        mlt_.step_min = std::min(params.stepmin, params.stepmax);
+        mlt_.step_max = params.stepmax;
+        mlt_.large_step = params.largestep;
+        mlt_.quantum = 0x1p-24f;
+        mlt_.samples = uint32_t(params.direct);
+
+        // One light path, and one camera ray that is uniform over the picture and its border.
+        const float area = (float(session.scene.width()) + 2.0f * camera.filter_radius_x) *
+                           (float(session.scene.height()) + 2.0f * camera.filter_radius_y);
+        pass_.paths = 1;
+        pass_.film_density = 1.0f / area;
+        pass_.maxdepth = params.maxdepth;
+        pass_.weights = params.weights;
+        pass_.only_light = pass_.only_camera = -1;
+        passes_->upload(&pass_, sizeof pass_);
+        const PathParams direct{std::min(params.maxdepth, kernel::MLT_LEAST_DEPTH - 1), 1};
+        params_ = argument_buffer(device_, direct, "parameters of direct light");
+
+        const uint32_t dimensions = kernel::MLT_VERTICES + kernel::MLT_VERTEX_NUMBERS * uint32_t(params.maxdepth + 1);
+        splats_ = device_.create_buffer(splat_bytes(pixels_, "mlt"), "splats");
+        states_ = device_.create_buffer(size_t(mlt_.chains) * sizeof(kernel::MltState), "chains");
+        numbers_ = device_.create_buffer(size_t(mlt_.chains) * dimensions * 4, "numbers of chains");
+        luminances_ = device_.create_buffer(std::max<size_t>(seeds_, 1) * 4, "luminances of seeds");
+        chosen_ = device_.create_buffer(size_t(mlt_.chains) * 4, "seeds of chains");
+        run_chains(0);  // compiles, if need be, before the clock starts
+        run_finish(0);
+    }
+
+    void render() {
+        while (const uint32_t count = session_.next_passes()) {
+            for (uint32_t i = 0; i < count; ++i) render_pass(uint32_t(session_.next_pass() + i));
+            session_.passes_finished(count);
+        }
+    }
+
+ private:
+    void render_pass(uint32_t number) {
+        // Direct light takes its samples as if they were passes.
+        const kernel::FilmWindow window = session_.window(number * mlt_.samples, mlt_.samples);
+        window_->upload(&window, sizeof window);
+        splats_->fill_zero();
+        counters_->fill_zero();
+        mlt_.seed = session_.seed * 0x9e3779b9u + number * 0x85ebca6bu + 0x27d4eb2fu;
+        mlt_.brightness = 0.0f;
+        if (mlt_.depths > 0 && session_.scene.record.light_count > 0) run_pass_of_chains();
+        mlt_pass_->upload(&mlt_, sizeof mlt_);
+        run_finish(pixels_);
+    }
+
+    void run_pass_of_chains() {
+        set_mode(kernel::MLT_SEEDS, 0, 1);
+        run_chains(seeds_);
+        std::vector<float> luminances(seeds_);
+        luminances_->download(luminances.data(), luminances.size() * 4);
+        double sum = 0.0;
+        for (const float l : luminances) sum += double(l);
+        if (sum > 0.0) {
+            const double u = double(hash_of(mlt_.seed)) * 0x1p-32;
+            const std::vector<uint32_t> chosen = resample(luminances, sum, mlt_.chains, u);
+            chosen_->upload(chosen.data(), chosen.size() * 4);
+            set_mode(kernel::MLT_START, 0, 1);
+            run_chains(mlt_.chains);
+            for (uint32_t done = 0; done < iterations_; done += kIterations) {
+                set_mode(kernel::MLT_MUTATE, done, std::min(iterations_ - done, kIterations));
+                run_chains(mlt_.chains);
+            }
+        }
+        // The mean luminance of seeds with a given number of scattering vertices, summed over these numbers.
+        const double brightness = sum / double(seeds_) * double(mlt_.depths);
+        mlt_.brightness = float(brightness / (double(mlt_.chains) * double(iterations_)));
+        std::array<uint32_t, kernel::MLT_COUNTERS> counters{};
+        counters_->download(&counters, sizeof counters);
+        session_.photons.rays += counters[kernel::MLT_RAYS];
+    }
+
+    static uint32_t hash_of(uint32_t x) {
+        x ^= x >> 16;
+        x *= 0x7feb352du;
+        x ^= x >> 15;
+        x *= 0x846ca68bu;
+        return x ^ (x >> 16);
+    }
+
+    void set_mode(uint32_t mode, uint32_t first, uint32_t iterations) {
+        mlt_.mode = mode;
+        mlt_.first = first;
+        mlt_.iterations = iterations;
+        mlt_pass_->upload(&mlt_, sizeof mlt_);
+    }
+
+    void run_chains(uint32_t count) {
+        const std::array<NamedBuffer, 9> buffers{{{"window", window_},
+                                                  {"passes", passes_},
+                                                  {"mlt", mlt_pass_},
+                                                  {"splats", splats_},
+                                                  {"counters", counters_},
+                                                  {"states", states_},
+                                                  {"numbers", numbers_},
+                                                  {"luminances", luminances_},
+                                                  {"chosen", chosen_}}};
+        device_.run(*chains_, session_.device_scene.get(), buffers, 0, count);
+    }
+
+    void run_finish(uint32_t count) {
+        const std::array<NamedBuffer, 5> buffers{{{"window", window_},
+                                                  {"params", params_},
+                                                  {"film", session_.film.buffer()},
+                                                  {"mlt", mlt_pass_},
+                                                  {"splats", splats_}}};
+        device_.run(*finish_, session_.device_scene.get(), buffers, 0, count);
+    }
+
+    RenderSession& session_;
+    Device& device_;
+    const uint32_t pixels_;
+    kernel::BidirectionalPass pass_{};
+    kernel::MltPass mlt_{};
+    uint32_t iterations_ = 0, seeds_ = 0;
+    KernelHandle chains_, finish_;
+    BufferHandle window_ = device_.create_buffer(sizeof(kernel::FilmWindow), "film window");
+    BufferHandle passes_ = device_.create_buffer(sizeof(kernel::BidirectionalPass), "pass");
+    BufferHandle mlt_pass_ = device_.create_buffer(sizeof(kernel::MltPass), "pass of chains");
+    BufferHandle counters_ = device_.create_buffer(kernel::MLT_COUNTERS * 4, "counters");
+    BufferHandle params_, splats_, states_, numbers_, luminances_, chosen_;
+};
+
+class Mlt : public Integrator {
+ public:
+    MltParams params;
+
+    void render(RenderSession& session) override { MltRender(session, params).render(); }
+};
+
+REGISTER_INTEGRATOR(Mlt, MLT_PARAMS, "mlt",
+                    "Metropolis light transport: chains of mutated paths, in primary sample space, multiplexed.")
+
+}  // namespace
+}  // namespace lampyris

@@ -1,0 +1,103 @@
+// Chains of paths (Metropolis and others 1953; Veach and Guibas 1997, "Metropolis Light Transport"), in primary sample space.
+#include "core/kernel/scene.h"
+
+#include "core/kernel/film.h"
+#include "integrators/bidirectional/bidirectional_layout.h"
+#include "integrators/mlt/mlt_layout.h"
+
+BUFFER_RO(0, FilmWindow, window)
+BUFFER_RO(1, BidirectionalPass, passes)
+BUFFER_RO(2, MltPass, mlt)
+BUFFER_RW(3, uint, splats)
+BUFFER_RW(4, uint, counters)
+BUFFER_RW(5, MltState, states)   // of chains
+BUFFER_RW(7, float, luminances)  // of seeds
+BUFFER_RO(8, uint, chosen)       // of each chain: its seed
+
+#include "core/kernel/splat.h"
+#include "integrators/mlt/mlt_path.h"
+
+// Adds a path to the picture.
+FN void mlt_splat(vec3 color, vec2 raster, float weight, uint key) {
+    if (!(weight > 0.0f)) return;
+    float filter_weight;
+    vec2 u = vec2(unit_float(hash_combine(key, 1u)), unit_float(hash_combine(key, 2u)));
+    ivec2 pixel = splat_pixel(raster, u, filter_weight);
+    FilmWindow w = window[0];
+    int x = pixel.x - int(w.x);
+    int y = pixel.y - int(w.y);
+    if (x < 0 || y < 0 || x >= int(w.width) || y >= int(w.height)) return;
+    splat_add(uint(y) * w.width + uint(x), color * (weight * filter_weight), mlt[0].quantum, key);
+}
+
+// The number of scattering vertices of a seed's path: seeds are shared out evenly.
+FN uint seed_depth(uint seed) { return uint(MLT_LEAST_DEPTH) + seed % mlt[0].depths; }
+
+KERNEL(mlt_chains) {
+    MltPass pass = mlt[0];
+    bool mutates = pass.mode == MLT_MUTATE;
+    uint seed = pass.mode == MLT_SEEDS ? index : chosen[index];
+    MltState state;
+    state.color = vec3(0.0f);
+    state.luminance = 0.0f;
+    state.raster = vec2(0.0f);
+    state.weight = 0.0f;
+    state.depth = seed_depth(seed);
+    if (mutates) state = states[index];
+    uint dimensions = mlt_dimensions(pass.depths);
+    uint large_steps = 0u;
+    uint large_accepted = 0u;
+    uint small_accepted = 0u;
+    primary_chain[0] = index;
+    uint end = mutates ? pass.iterations : 1u;
+    uint i = 0u;
+    for (; i < end; ++i) {
+        uint key = hash_combine(hash32(pass.seed), seed);  // of a seed
+        float u_accept = 0.0f;
+        primary_large[0] = 1u;
+        if (mutates) {
+            key = hash_combine(hash_combine(hash32(pass.seed ^ 0x5bd1e995u), index), pass.first + i);
+            primary_large[0] = unit_float(hash_combine(key, 3u)) < pass.large_step ? 1u : 0u;
+            u_accept = unit_float(hash_combine(key, 4u));
+            large_steps += primary_large[0];
+        }
+        primary_key[0] = key;
+        MltSample proposed = mlt_sample(int(state.depth));
+        float acceptance = 1.0f;
+        if (mutates) {
+            // A proposal that is black or not finite is rejected, and the current path counts.
+            acceptance = proposed.luminance > 0.0f ? min(proposed.luminance / state.luminance, 1.0f) : 0.0f;
+            state.weight += 1.0f - acceptance;
+        }
+        if (u_accept < acceptance) {
+            if (mutates) {
+                mlt_splat(state.color, state.raster, state.weight, key);
+                large_accepted += primary_large[0];
+                small_accepted += 1u - primary_large[0];
+            }
+            if (pass.mode != MLT_SEEDS) primary_accept(dimensions);
+            state.color = proposed.luminance > 0.0f ? proposed.color / proposed.luminance : vec3(0.0f);
+            state.luminance = proposed.luminance;
+            state.raster = proposed.raster;
+            state.weight = mutates ? acceptance : 0.0f;
+        } else if (acceptance > 0.0f) {
+            mlt_splat(proposed.color / proposed.luminance, proposed.raster, acceptance, key);
+        }
+    }
+    if (i != end) REPORT_UNFINISHED();
+    if (pass.mode == MLT_SEEDS) {
+        luminances[index] = state.luminance;
+    } else {
+        if (mutates) {
+            mlt_splat(state.color, state.raster, state.weight, hash_combine(primary_key[0], 5u));
+            state.weight = 0.0f;
+        }
+        states[index] = state;
+    }
+    ATOMIC_ADD_U32(counters[MLT_RAYS], traced_rays[0]);
+    if (mutates) {
+        ATOMIC_ADD_U32(counters[MLT_LARGE_STEPS], large_steps);
+        ATOMIC_ADD_U32(counters[MLT_LARGE_ACCEPTED], large_accepted);
+        ATOMIC_ADD_U32(counters[MLT_SMALL_ACCEPTED], small_accepted);
+    }
+}
