@@ -89,7 +89,7 @@ FN void leaves(INOUT(MisSums) m, uint at, uint previous, uint next, uint h) {
         mis_scatter_specular(m, cosine(at, previous), from_light ? v.eta : 1.0f / v.eta, h);
     } else {
         mis_scatter(m, cosine(at, next), from_light ? v.to_camera : v.to_light, from_light ? v.to_light : v.to_camera,
-                    h);
+                    0.0f, h);
     }
 }
 
@@ -104,7 +104,7 @@ FN float weight_of_light(IN(ProbePath) p, IN(MisSums) m, uint h) {
     } else {
         emitted = mis_area_density(p, p.pw);
     }
-    float others = mis_end(m, emitted * abs(cosine(x, p.first)), vertices[x].to_camera, h);
+    float others = mis_end(m, emitted * abs(cosine(x, p.first)), vertices[x].to_camera, 0.0f, h);
     if (p.light == PROBE_AREA || p.light == PROBE_INFINITE) others += mis_term(vertices[x].to_light / p.pd, h);
     return mis_weight(others);
 }
@@ -119,7 +119,7 @@ FN float weight_of_connection(IN(ProbePath) p, IN(MisSums) m, uint x, uint h) {
     float inverse_d2 = 1.0f / mis_area(p, length_squared(way(x, y)));
     float from_x = vertices[x].to_light * abs(cosine(y, x)) * inverse_d2;
     float from_y = vertices[y].to_camera * abs(cosine(x, y)) * inverse_d2;
-    return mis_weight(mis_end(m_y, from_x, vertices[y].to_light, h) + mis_end(m, from_y, vertices[x].to_camera, h));
+    return mis_weight(mis_end(m_y, from_x, vertices[y].to_light, 0.0f, h) + mis_end(m, from_y, vertices[x].to_camera, 0.0f, h));
 }
 
 // weight_of_hit_light, weight_of_environment: the sums are those that leave vertex 1
@@ -143,7 +143,7 @@ KERNEL(mis_probe) {
         light_sums[i] = vec2(m.a, m.d);
         if (at + 1u == camera && vertices[at].specular == 0u) {  // splat_vertex
             float from_camera = mis_area_density(p, importance(p, at) * abs(cosine(at, camera))) / p.lens_samples;
-            weights[result + i + 1u] = mis_weight(mis_end(m, from_camera, vertices[at].to_light, h));
+            weights[result + i + 1u] = mis_weight(mis_end(m, from_camera, vertices[at].to_light, 0.0f, h));
         }
         leaves(m, at, at - 1u, at + 1u, h);
     }

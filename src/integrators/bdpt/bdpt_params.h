@@ -9,7 +9,8 @@
     P(int, rrdepth, 3, 0, 100000, "vertices after which Russian roulette may end a path, from either side")         \
     P(int, lightpaths, -1, -1, 1000000000, "paths from lights in each pass; -1: as many as the picture has pixels") \
     P(int, connections, -1, -1, 60000,                                                                              \
-      "vertices of a light path to which each vertex of a camera path is connected, chosen at random; -1: all")     \
+      "vertices of a light path to which each vertex of a camera path is connected, chosen at random; -1: all; 0: " \
+      "none, and weights know it")                                                                                  \
     P(uint, weights, 0, 0, 2,                                                                                       \
       "{balance|power|none} heuristic that weighs the strategies; none shows each as if it were alone: for one of " \
       "them, chosen by the next two")                                                                               \

@@ -17,6 +17,12 @@ float splat_quantum(const Scene& scene) {
     return float(std::clamp(radiance * 0x1p-24, 1e-36, 1e20));
 }
 
+float film_density(const Scene& scene) {
+    const kernel::CameraRecord& camera = scene.record.camera;
+    const float filter_area = 4.0f * camera.filter_radius_x * camera.filter_radius_y;  // in pixels
+    return 1.0f / std::clamp(filter_area, 1e-12f, 1.0f);
+}
+
 size_t splat_bytes(uint32_t pixels, const char* integrator) {
     constexpr uint32_t kMost = std::numeric_limits<uint32_t>::max() / kernel::SPLAT_WORDS;
     if (pixels > kMost)

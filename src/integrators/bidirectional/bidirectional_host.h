@@ -16,6 +16,9 @@ namespace kernel {
 // lights' whole power. 64 bits hold 5e11 times that.
 float splat_quantum(const Scene& scene);
 
+// The density, per pixel, of the film points of a pixel's camera rays: above 1 if the pixel filter is narrower than a pixel.
+float film_density(const Scene& scene);
+
 // Bytes of the splats of a film's pixels. Throws InputError if kernels cannot number them.
 size_t splat_bytes(uint32_t pixels, const char* integrator);
 

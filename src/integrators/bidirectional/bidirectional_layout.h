@@ -2,13 +2,13 @@
 #ifndef LAMPYRIS_BIDIRECTIONAL_LAYOUT
 #define LAMPYRIS_BIDIRECTIONAL_LAYOUT
 
-// A vertex of a light path to which camera paths connect: the last ray and the primitive that it hit, from which the surface
-// is computed again, and what the path carries. The vertices of a path are linked from the last to the first.
-struct LightVertexRecord {  // light_vertex.h has functions that unpack it
-    uvec4 origin;           // of the ray (bits of floats); w: instance
-    uvec4 direction;        // bits of floats; w: geometry
-    uvec4 more;             // primitive, slot of the previous vertex or NONE, depth << 16 | rank, MisSums::a (bits)
-    vec4 throughput;        // power that arrives, over the density of the path (W); w: MisSums::d
+// A vertex of a path that is kept to be joined with paths from the other end: the last ray and the primitive that it hit, from
+// which the surface is computed again, and what the path carries. The vertices of a path are linked from the last to the first.
+struct PathVertexRecord {  // path_vertex.h has functions that unpack it
+    uvec4 origin;          // of the ray (bits of floats); w: instance
+    uvec4 direction;       // bits of floats; w: geometry
+    uvec4 more;            // primitive, slot of the previous vertex or NONE, depth << 16 | rank, MisSums::a (bits)
+    vec4 throughput;       // w: MisSums::d
 };
 
 // One pass, or a part of it: the light paths first_path to first_path + part_paths - 1, and the camera paths that connect to
@@ -28,14 +28,21 @@ struct BidirectionalPass {
     uint weights;     // WEIGHTS_*
     int only_light;   // strategy to render, as counts of vertices; negative: any
     int only_camera;
-    float quantum;     // of splats (splat.h), in units of radiance
-    float brightness;  // a splat times this is about the radiance of a pixel: what the sensor's clamp compares
-    float
-        film_density;  // of the film points of a pixel's camera rays, per pixel: above 1 if the pixel filter is narrower
-    float unused0;
-    float unused1;
-    float unused2;
+    float quantum;       // of splats (splat.h), in units of radiance
+    float brightness;    // a splat times this is about the radiance of a pixel: what the sensor's clamp compares
+    float film_density;  // density, per pixel, of the film points of its camera rays: above 1 if the filter is narrower
+    uint strategies;     // STRATEGIES_*
+    float radius;        // within which vertices are merged, in scene units
+    float eta;           // of merging, for weights (mis.h); 0: vertices are not merged
+    uint photon_capacity;
+    uint sums_capacity;  // of photon_sums
+    uint query_capacity;
+    uint features;  // 1: camera paths add the features of their first hits to the film; 0: not again
 };
+
+CONST uint STRATEGIES_ALL = 0u;
+// Nothing is connected: vertices are merged, and light is seen over specular surfaces.
+CONST uint STRATEGIES_MERGING = 1u;
 
 CONST uint WEIGHTS_BALANCE = 0u;
 CONST uint WEIGHTS_POWER = 1u;
@@ -47,6 +54,9 @@ CONST uint LIGHT_RAYS = 1u;
 CONST uint LIGHT_SPLATS = 2u;  // connections to the camera that were unoccluded
 CONST uint CONNECTIONS_TRIED = 3u;
 CONST uint CONNECTIONS_VISIBLE = 4u;
+CONST uint PHOTONS_KEPT = 5u;   // including those that did not fit
+CONST uint MOST_PHOTONS = 6u;   // of one path
+CONST uint MERGE_QUERIES = 7u;  // including those that did not fit
 CONST uint BIDIRECTIONAL_COUNTERS = 8u;
 
 #endif

@@ -40,7 +40,7 @@ FN Spectrum connect_to_light(IN(Subpath) path, IN(Surface) s, IN(Vertex) v, uint
         emitted = mis_area_density(1.0f / distant_area());
     }
     uint h = heuristic();
-    float others = mis_end(path.mis, emitted * abs_dot(light.wi, s.ng), reverse, h);
+    float others = mis_end(path.mis, emitted * abs_dot(light.wi, s.ng), reverse, passes[0].eta, h);
     if (light.is_delta == 0u) others += mis_term(forward / light.pdf, h);
     return path.walk.throughput * f * light.radiance * through * (abs(wi.z) * mis_weight(others) / light.pdf);
 }
@@ -69,8 +69,8 @@ FN Spectrum connect_to_vertex(IN(Subpath) path, IN(Surface) s, IN(Vertex) v, IN(
     connections_visible[0] += 1u;
     float inverse_d2 = 1.0f / mis_area(d2);
     uint h = heuristic();
-    float others = mis_end(y.mis, forward * abs_dot(w, y.surface.ng) * inverse_d2, reverse_y, h) +
-                   mis_end(path.mis, forward_y * abs_dot(w, s.ng) * inverse_d2, reverse, h);
+    float others = mis_end(y.mis, forward * abs_dot(w, y.surface.ng) * inverse_d2, reverse_y, passes[0].eta, h) +
+                   mis_end(path.mis, forward_y * abs_dot(w, s.ng) * inverse_d2, reverse, passes[0].eta, h);
     float cosine_y = importance_cosine(y.direction, y.surface, y.vertex, -w);
     return path.walk.throughput * f * f_y * through * y.throughput * (abs(wi.z) * cosine_y * mis_weight(others) / d2);
 }
@@ -85,7 +85,7 @@ FN Spectrum connect_to_lens(IN(Subpath) path, IN(Surface) s, IN(Vertex) v, IN(Ca
     Spectrum through = scene_transmittance(s, c.wi, c.distance, c.end, path.walk.medium);
     if (is_black(through)) return Spectrum(0.0f);
     float from_camera = mis_area_density(c.importance * abs_dot(c.wi, s.ng)) / lens_samples();
-    float others = mis_end(path.mis, from_camera, reverse, heuristic());
+    float others = mis_end(path.mis, from_camera, reverse, passes[0].eta, heuristic());
     float cosine = importance_cosine(path.walk.ray.direction, s, v, c.wi);
     return path.walk.throughput * f * through * (cosine * c.importance * mis_weight(others));
 }

@@ -6,7 +6,8 @@
 // a path keeps two sums over the strategies that have fewer vertices from its side:
 //     a   the strategy that ends one vertex earlier, over the density of sampling the last vertex from the next one,
 //     d   all others, over that density, and over the density of sampling the last but one vertex from the last.
-// The two densities are known when the path goes on, or is connected. `a` is Georgiev's d_VCM, `d` his d_VC.
+// The two densities are known when the path goes on, or is connected. `a` is Georgiev's d_VCM, `d` his d_VC; his d_VM is d over the
+// term of `eta`, the number of light paths times the area within which vertices are merged.
 //
 // Densities are of positions, per area. They are made of the geometric cosines, because positions are on the true surface,
 // and lengths are in units of the scene's radius, so that squares stay within a float's range.
@@ -46,9 +47,10 @@ FN void mis_arrive(INOUT(MisSums) m, float squared_distance, float cosine, uint 
 }
 
 // The path goes on from a vertex, in a direction that was sampled with the density `forward` (1/sr). `reverse`: the density, from
-// there, of the direction to the previous vertex. `cosine`: geometric, of the new direction.
-FN void mis_scatter(INOUT(MisSums) m, float cosine, float forward, float reverse, uint heuristic) {
-    m.d = mis_term(mis_cosine(cosine) / forward, heuristic) * (m.a + mis_term(reverse, heuristic) * m.d);
+// there, of the direction to the previous vertex. `cosine`: geometric, of the new direction. `eta`: of merging (0: none).
+FN void mis_scatter(INOUT(MisSums) m, float cosine, float forward, float reverse, float eta, uint heuristic) {
+    float earlier = mis_term(eta, heuristic) + m.a + mis_term(reverse, heuristic) * m.d;
+    m.d = mis_term(mis_cosine(cosine) / forward, heuristic) * earlier;
     m.a = 1.0f / mis_term(forward, heuristic);
     mis_bound(m);
 }
@@ -62,9 +64,15 @@ FN void mis_scatter_specular(INOUT(MisSums) m, float cosine, float eta, uint heu
 }
 
 // What one end of a connection adds to the sum: the strategies in which the other end samples this vertex, with the density
-// `from_other` (per area). `reverse`: the density, at this vertex, of the direction to the previous one.
-FN float mis_end(IN(MisSums) m, float from_other, float reverse, uint heuristic) {
-    return mis_term(from_other, heuristic) * (m.a + mis_term(reverse, heuristic) * m.d);
+// `from_other` (per area), and merging there. `reverse`: the density, at this vertex, of the direction to the previous one.
+FN float mis_end(IN(MisSums) m, float from_other, float reverse, float eta, uint heuristic) {
+    float earlier = mis_term(eta, heuristic) + m.a + mis_term(reverse, heuristic) * m.d;
+    return mis_term(from_other, heuristic) * min(earlier, MIS_LARGEST);
+}
+
+// What one of two merged ends adds. `reverse`: as above.
+FN float mis_merged_end(IN(MisSums) m, float reverse, float eta, uint heuristic) {
+    return min(m.a + mis_term(reverse, heuristic) * m.d, MIS_LARGEST) / mis_term(eta, heuristic);
 }
 
 #endif

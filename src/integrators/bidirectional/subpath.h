@@ -2,26 +2,8 @@
 #ifndef LAMPYRIS_SUBPATH
 #define LAMPYRIS_SUBPATH
 
-#include "integrators/bidirectional/bidirectional_layout.h"
-#include "integrators/bidirectional/mis.h"
-
-FN uint heuristic() { return passes[0].weights == WEIGHTS_POWER ? HEURISTIC_POWER : HEURISTIC_BALANCE; }
-
-// Areas in units of the squared radius of the scene: for all densities that enter weights.
-FN float mis_area(float area) { return area / sqr(scene[0].bounds.w); }
-FN float mis_area_density(float density) { return density * sqr(scene[0].bounds.w); }
-
-// The weight of a strategy from the sum of the others' densities over its own.
-FN float mis_weight(float others) { return passes[0].weights == WEIGHTS_NONE ? 1.0f : 1.0f / (1.0f + others); }
-
-// Light paths that may reach a pixel, over its camera rays: the density of strategies t = 1 has this factor.
-FN float lens_samples() { return float(passes[0].paths) / passes[0].film_density; }
-
-FN bool strategy_wanted(int from_light, int from_camera) {
-    int s = passes[0].only_light;
-    int t = passes[0].only_camera;
-    return (s < 0 || s == from_light) && (t < 0 || t == from_camera);
-}
+#include "core/kernel/camera_connect.h"
+#include "integrators/bidirectional/weights.h"
 
 // A path and its sums.
 struct Subpath {
@@ -29,6 +11,7 @@ struct Subpath {
     MisSums mis;
     vec3 previous;     // position of the previous vertex
     bool no_distance;  // there is none, because the path starts at infinity
+    bool is_specular;  // so far
 };
 
 // No path, with all members initialised.
@@ -47,6 +30,7 @@ FN Subpath no_subpath() {
     path.mis.d = 0.0f;
     path.previous = vec3(0.0f);
     path.no_distance = true;
+    path.is_specular = true;
     return path;
 }
 
@@ -55,6 +39,9 @@ FN void subpath_arrives(INOUT(Subpath) path, IN(Surface) s) {
     float d2 = path.no_distance ? 1.0f : mis_area(length_squared(s.position - path.previous));
     path.no_distance = false;
     mis_arrive(path.mis, d2, dot3(path.walk.ray.direction, s.ng), heuristic());
+    // What joins this vertex to the previous one: next-event estimation or a splat at the first vertex, a connection at others.
+    if (passes[0].strategies == STRATEGIES_MERGING || (passes[0].connections == 0 && path.walk.depth > 0))
+        path.mis.a = 0.0f;
 }
 
 // Continues from the vertex at s in the sampled direction; `density` is that of bsdf_sample_density. False if the path ends.
@@ -64,7 +51,8 @@ FN bool subpath_leaves(INOUT(Subpath) path, IN(Surface) s, IN(Vertex) v, IN(Bsdf
         mis_scatter_specular(path.mis, dot3(path.walk.ray.direction, s.ng), next.eta, heuristic());
     } else {
         float reverse = bsdf_pdf(v.bsdf, next.wi, v.wo, TRANSPORT_IMPORTANCE - path.walk.transport);
-        mis_scatter(path.mis, dot3(to_world(v.frame, next.wi), s.ng), density, reverse, heuristic());
+        mis_scatter(path.mis, dot3(to_world(v.frame, next.wi), s.ng), density, reverse, passes[0].eta, heuristic());
+        path.is_specular = false;
     }
     path.previous = s.position;
     return walk_leave(path.walk, s, v, next, rrdepth, numbers, dimension);
@@ -79,6 +67,7 @@ FN Subpath light_path_begin(IN(Emission) start, int maxdepth) {
     path.walk = walk_begin(ray_of(start.origin, start.direction), start.medium, TRANSPORT_IMPORTANCE, maxdepth);
     path.walk.throughput = start.power;
     path.previous = start.position;
+    path.is_specular = true;
     path.no_distance = true;  // the quotients of densities below have no distances, or include them
     uint kind = lights[start.light].kind;
     path.mis.a = 0.0f;
@@ -95,7 +84,7 @@ FN Subpath light_path_begin(IN(Emission) start, int maxdepth) {
         path.no_distance = false;
     }
     path.mis.a = mis_term(path.mis.a, heuristic());
-    path.mis.d = mis_term(path.mis.d, heuristic());
+    path.mis.d = passes[0].strategies == STRATEGIES_MERGING ? 0.0f : mis_term(path.mis.d, heuristic());
     return path;
 }
 
@@ -114,6 +103,7 @@ FN Subpath camera_path_begin(IN(Ray) ray, int maxdepth) {
     path.walk = walk_begin(ray, camera_medium(), TRANSPORT_RADIANCE, maxdepth);
     path.previous = ray.origin;
     path.no_distance = true;
+    path.is_specular = true;
     path.mis.a = 0.0f;
     path.mis.d = 0.0f;
     return path;
@@ -128,6 +118,7 @@ FN void camera_path_meets_first(INOUT(Subpath) path, IN(Surface) s) {
 // The weight of emission of the area light at s that the path finds by chance, before it arrives there: strategy s = 0.
 FN float weight_of_hit_light(IN(Subpath) path, IN(Surface) s) {
     if (path.walk.depth == 0) return 1.0f;
+    if (passes[0].strategies == STRATEGIES_MERGING) return path.is_specular ? 1.0f : 0.0f;
     vec3 w = path.walk.ray.direction;
     float direct = area_light_pdf(s.light, path.previous, s.position, s.ng, w);
     float emitted = mis_area_density(area_emission_pdf(s.light, path.previous, s.position, s.ng, w)) * INV_PI /
@@ -139,6 +130,7 @@ FN float weight_of_hit_light(IN(Subpath) path, IN(Surface) s) {
 // The same for radiance from infinite lights.
 FN float weight_of_environment(IN(Subpath) path) {
     if (path.walk.depth == 0) return 1.0f;
+    if (passes[0].strategies == STRATEGIES_MERGING) return path.is_specular ? 1.0f : 0.0f;
     float direct = environment_pdf(path.walk.ray.direction);
     uint h = heuristic();
     return mis_weight(mis_term(direct, h) *

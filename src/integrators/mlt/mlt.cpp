@@ -70,6 +70,7 @@ class MltRender {
         pass_.film_density = 1.0f / area;
         pass_.maxdepth = params.maxdepth;
         pass_.weights = params.weights;
+        pass_.connections = -1;
         pass_.only_light = pass_.only_camera = -1;
         passes_->upload(&pass_, sizeof pass_);
         const PathParams direct{std::min(params.maxdepth, kernel::MLT_LEAST_DEPTH - 1), 1};

@@ -1,4 +1,5 @@
-// Follows a path from a light, connects each vertex to the camera (strategies t = 1), and stores it for the camera paths.
+// Follows a path from a light: connects each vertex to the camera (strategies t = 1), stores it for the camera paths that connect to
+// it, and keeps a photon wherever one may merge with it.
 #include "core/kernel/scene.h"
 
 #include "core/kernel/film.h"
@@ -8,11 +9,15 @@ BUFFER_RO(0, FilmWindow, window)
 BUFFER_RO(1, BidirectionalPass, passes)
 BUFFER_RW(2, uint, splats)
 BUFFER_RW(3, uint, counters)
-BUFFER_RW(4, LightVertexRecord, vertices)
+BUFFER_RW(4, PathVertexRecord, vertices)
 BUFFER_RW(5, uint, last_vertices)  // of each path of this part: slot of the last vertex, or NONE
+BUFFER_RW(6, PhotonRecord, photons)
+BUFFER_RW(7, vec4, photon_sums)  // by the photons' keys: MisSums, and the number of the scattering vertex
 
 #include "integrators/bidirectional/lens_connection.h"
-#include "integrators/bidirectional/light_vertex.h"
+#include "core/kernel/photon.h"
+#include "core/kernel/visible_point.h"
+#include "integrators/bidirectional/path_vertex.h"
 #include "integrators/bidirectional/connect.h"
 
 // Adds to the picture what the light path shows at the vertex. True if the camera sees it.
@@ -26,11 +31,23 @@ FN bool splat_vertex(IN(Subpath) path, IN(Surface) s, IN(Vertex) v, IN(Sampler) 
     return true;
 }
 
-KERNEL(bdpt_light_paths) {
+// Keeps a photon. Any leaf of a mix may gather it, whatever leaf this path goes on with: the camera path makes that choice.
+FN void keep_photon(IN(Subpath) path, IN(Surface) s, uint index, uint number) {
+    BidirectionalPass pass = passes[0];
+    uint slot = ATOMIC_ADD_U32(counters[PHOTONS_KEPT], 1u);
+    uint key = photon_key(index - pass.first_path, number, pass.part_paths);
+    if (slot < pass.photon_capacity)
+        photons[slot] = photon_pack(s.position, path.walk.ray.direction, path.walk.throughput / float(pass.paths), key);
+    if (number < pass.sums_capacity / pass.part_paths)
+        photon_sums[key] = vec4(path.mis.a, path.mis.d, float(path.walk.depth + 1), 0.0f);
+}
+
+KERNEL(light_subpaths) {
     BidirectionalPass pass = passes[0];
     uint slot = NONE;
     uint rank = 0u;
     uint splatted = 0u;
+    uint kept = 0u;
     Sampler numbers = light_path_numbers(index, pass.number, pass.seed, pass.sampler_kind);
     Emission start;
     if (light_path_emits(numbers, start)) {
@@ -42,18 +59,22 @@ KERNEL(bdpt_light_paths) {
             if (path.walk.depth >= path.walk.maxdepth) break;
             if (path.walk.depth == 0) light_path_meets_first(path, start, s);
             subpath_arrives(path, s);
+            if (pass.eta > 0.0f && material_may_gather(s.material, 0.0f)) {
+                keep_photon(path, s, index, kept);
+                kept += 1u;
+            }
             Vertex v = walk_vertex(path.walk, s);
             uint dimension = light_vertex_dimension(path.walk);
             int depth = path.walk.depth + 1;
-            if (!bsdf_is_specular(v.bsdf)) {
+            if (pass.strategies == STRATEGIES_ALL && !bsdf_is_specular(v.bsdf)) {
                 if (pass.splats != 0u && strategy_wanted(depth + 1, 1) && splat_vertex(path, s, v, numbers, dimension))
                     splatted += 1u;
                 if (depth < pass.maxdepth && pass.connections != 0) {
                     uint place = ATOMIC_ADD_U32(counters[LIGHT_VERTICES], 1u);
                     rank += 1u;
                     if (place < pass.capacity)
-                        vertices[place] = light_vertex_record(path.walk.ray, s, path.walk.throughput, path.mis,
-                                                              uint(depth), rank, slot);
+                        vertices[place] = path_vertex_record(path.walk.ray, s, path.walk.throughput, path.mis,
+                                                             uint(depth), rank, slot);
                     slot = place;
                 }
             }
@@ -67,5 +88,6 @@ KERNEL(bdpt_light_paths) {
     }
     last_vertices[index - pass.first_path] = slot;
     ATOMIC_ADD_U32(counters[LIGHT_RAYS], traced_rays[0]);
+    if (kept > counters[MOST_PHOTONS]) ATOMIC_MAX_U32(counters[MOST_PHOTONS], kept);
     if (splatted != 0u) ATOMIC_ADD_U32(counters[LIGHT_SPLATS], splatted);
 }

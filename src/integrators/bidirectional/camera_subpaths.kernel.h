@@ -1,4 +1,5 @@
-// Follows a camera path, and connects each vertex to a light (strategies s = 1) and to the vertices of a light path.
+// Follows a camera path: connects each vertex to a light (strategies s = 1) and to the vertices of a light path, and stores it
+// to be merged with photons.
 #include "core/kernel/scene.h"
 
 #include "core/kernel/film.h"
@@ -8,12 +9,16 @@ BUFFER_RO(0, FilmWindow, window)
 BUFFER_RO(1, BidirectionalPass, passes)
 BUFFER_RW(2, FilmPixel, film)
 BUFFER_RW(3, uint, counters)
-BUFFER_RO(4, LightVertexRecord, vertices)
+BUFFER_RO(4, PathVertexRecord, vertices)
 BUFFER_RO(5, uint, last_vertices)
-BUFFER_RW(6, vec4, seen)  // of each pixel: what its camera path contributes
+BUFFER_RW(6, vec4,
+          seen)  // of each pixel: what its camera path contributes, without merging; w: weight of the pixel filter
+BUFFER_RW(7, PathVertexRecord, merged)  // vertices to be merged
+BUFFER_RW(8, vec4, queries)             // position, radius of each of these
+BUFFER_RW(9, uint, last_merged)         // of each pixel: slot of the last one, or NONE
 
 #include "core/kernel/camera_connect.h"
-#include "integrators/bidirectional/light_vertex.h"
+#include "integrators/bidirectional/path_vertex.h"
 #include "integrators/bidirectional/connect.h"
 
 // Dimensions of a vertex, as those of `path`, and one for the choice of vertices to connect to.
@@ -34,11 +39,11 @@ FN Spectrum connect_to_path(IN(Subpath) path, IN(Surface) s, IN(Vertex) v, uint 
     float chance = 1.0f;
     int depth = path.walk.depth + 1;
     for (uint turn = 0u; slot != NONE && turn < 65536u; ++turn) {
-        LightVertexRecord y = vertices[slot];
-        slot = light_vertex_previous(y);
-        if (light_vertex_depth(y) + depth > pass.maxdepth) continue;
-        if (!strategy_wanted(light_vertex_depth(y) + 1, depth + 1)) continue;
-        uint rank = light_vertex_rank(y);
+        PathVertexRecord y = vertices[slot];
+        slot = path_vertex_previous(y);
+        if (path_vertex_depth(y) + depth > pass.maxdepth) continue;
+        if (!strategy_wanted(path_vertex_depth(y) + 1, depth + 1)) continue;
+        uint rank = path_vertex_rank(y);
         if (count == 0u) {
             count = rank;
             if (pass.connections > 0 && uint(pass.connections) < count) chance = float(pass.connections) / float(count);
@@ -46,16 +51,27 @@ FN Spectrum connect_to_path(IN(Subpath) path, IN(Surface) s, IN(Vertex) v, uint 
         // Systematic sampling: of `count` vertices, those at which floor(rank chance + u) grows.
         if (chance < 1.0f && floor(float(rank) * chance + u) == floor(float(rank - 1u) * chance + u)) continue;
         LightEnd end;
-        end.vertex = light_vertex(y, end.surface);
-        end.direction = light_vertex_direction(y);
-        end.throughput = light_vertex_throughput(y);
-        end.mis = light_vertex_sums(y);
+        end.vertex = path_vertex(y, end.surface);
+        end.direction = path_vertex_direction(y);
+        end.throughput = path_vertex_throughput(y);
+        end.mis = path_vertex_sums(y);
         sum += connect_to_vertex(path, s, v, end);
     }
     return sum / chance;
 }
 
-KERNEL(bdpt_camera_paths) {
+// Stores a vertex to be merged; the result is its slot.
+FN uint keep_vertex(IN(Subpath) path, IN(Surface) s, uint previous) {
+    BidirectionalPass pass = passes[0];
+    uint slot = ATOMIC_ADD_U32(counters[MERGE_QUERIES], 1u);
+    if (slot >= pass.query_capacity) return previous;
+    merged[slot] =
+        path_vertex_record(path.walk.ray, s, path.walk.throughput, path.mis, uint(path.walk.depth) + 1u, 0u, previous);
+    queries[slot] = vec4(s.position.x, s.position.y, s.position.z, pass.radius);
+    return slot;
+}
+
+KERNEL(camera_subpaths) {
     BidirectionalPass pass = passes[0];
     FilmWindow w = window[0];
     uvec2 local = film_pixel_of(index, w);
@@ -68,6 +84,7 @@ KERNEL(bdpt_camera_paths) {
     Spectrum radiance = Spectrum(0.0f);
     connections_tried[0] = 0u;
     connections_visible[0] = 0u;
+    uint last_kept = NONE;
     Surface s;
     while (walk_next(path.walk, s)) {
         if (HAS(EFFECT_AREA_LIGHTS) && s.light != NONE && strategy_wanted(0, path.walk.depth + 2)) {
@@ -82,7 +99,9 @@ KERNEL(bdpt_camera_paths) {
         if (path.walk.depth >= path.walk.maxdepth) break;
         uint dimension = CAMERA_DIMENSIONS + uint(path.walk.depth) * BDPT_VERTEX_DIMENSIONS;
         uvec4 u = sample_bits_2d_2d_at(camera.numbers, dimension + BDPT_DIRECTION_AND_LIGHT);
-        if (!bsdf_is_specular(v.bsdf) && scene[0].light_count > 0u) {
+        bool joins = !bsdf_is_specular(v.bsdf) && scene[0].light_count > 0u;
+        if (joins && pass.eta > 0.0f) last_kept = keep_vertex(path, s, last_kept);
+        if (joins && pass.strategies == STRATEGIES_ALL) {
             if (strategy_wanted(1, path.walk.depth + 2)) {
                 uint u_light = 0u;
                 if (light_choice_needs_number())
@@ -106,12 +125,14 @@ KERNEL(bdpt_camera_paths) {
         Spectrum emitted = environment_radiance(path.walk.ray.direction);
         if (!is_black(emitted)) radiance += path.walk.throughput * emitted * weight_of_environment(path);
     }
-    vec3 value = film_sensor(radiance) * camera.weight;
-    seen[at] = vec4(value.x, value.y, value.z, 0.0f);
-    FilmPixel pixel = film[at];
-    film_add_first_hit(pixel, first);
-    pixel.rays += traced_rays[0];
-    film[at] = pixel;
+    seen[at] = slot_of(radiance, camera.weight);
+    if (pass.eta > 0.0f) last_merged[at] = last_kept;
+    if (pass.features != 0u) {
+        FilmPixel pixel = film[at];
+        film_add_first_hit(pixel, first);
+        pixel.rays += traced_rays[0];
+        film[at] = pixel;
+    }
     ATOMIC_ADD_U32(counters[CONNECTIONS_TRIED], connections_tried[0]);
     ATOMIC_ADD_U32(counters[CONNECTIONS_VISIBLE], connections_visible[0]);
 }

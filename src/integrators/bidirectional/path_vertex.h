@@ -1,32 +1,32 @@
-// The contents of a LightVertexRecord, by name, and the vertex itself.
-#ifndef LAMPYRIS_LIGHT_VERTEX
-#define LAMPYRIS_LIGHT_VERTEX
+// The contents of a PathVertexRecord, by name, and the vertex itself.
+#ifndef LAMPYRIS_PATH_VERTEX
+#define LAMPYRIS_PATH_VERTEX
 
 #include "integrators/bidirectional/bidirectional_layout.h"
 #include "integrators/bidirectional/mis.h"
 
-FN vec3 light_vertex_origin(IN(LightVertexRecord) y) {
+FN vec3 path_vertex_origin(IN(PathVertexRecord) y) {
     return vec3(uintBitsToFloat(y.origin.x), uintBitsToFloat(y.origin.y), uintBitsToFloat(y.origin.z));
 }
-// Of the ray that arrives, away from the light.
-FN vec3 light_vertex_direction(IN(LightVertexRecord) y) {
+// Of the ray that arrives.
+FN vec3 path_vertex_direction(IN(PathVertexRecord) y) {
     return vec3(uintBitsToFloat(y.direction.x), uintBitsToFloat(y.direction.y), uintBitsToFloat(y.direction.z));
 }
-FN uint light_vertex_previous(IN(LightVertexRecord) y) { return y.more.y; }
+FN uint path_vertex_previous(IN(PathVertexRecord) y) { return y.more.y; }
 // Number of the scattering vertex on the path, from 1, and number among the path's stored vertices, from 1.
-FN int light_vertex_depth(IN(LightVertexRecord) y) { return int(y.more.z >> 16u); }
-FN uint light_vertex_rank(IN(LightVertexRecord) y) { return y.more.z & 0xffffu; }
-FN Spectrum light_vertex_throughput(IN(LightVertexRecord) y) { return spectrum_of(y.throughput); }
-FN MisSums light_vertex_sums(IN(LightVertexRecord) y) {
+FN int path_vertex_depth(IN(PathVertexRecord) y) { return int(y.more.z >> 16u); }
+FN uint path_vertex_rank(IN(PathVertexRecord) y) { return y.more.z & 0xffffu; }
+FN Spectrum path_vertex_throughput(IN(PathVertexRecord) y) { return spectrum_of(y.throughput); }
+FN MisSums path_vertex_sums(IN(PathVertexRecord) y) {
     MisSums m;
     m.a = uintBitsToFloat(y.more.w);
     m.d = y.throughput.w;
     return m;
 }
 
-FN LightVertexRecord light_vertex_record(IN(Ray) ray, IN(Surface) s, Spectrum throughput, IN(MisSums) m, uint depth,
-                                         uint rank, uint previous) {
-    LightVertexRecord y;
+FN PathVertexRecord path_vertex_record(IN(Ray) ray, IN(Surface) s, Spectrum throughput, IN(MisSums) m, uint depth,
+                                       uint rank, uint previous) {
+    PathVertexRecord y;
     y.origin =
         uvec4(floatBitsToUint(ray.origin.x), floatBitsToUint(ray.origin.y), floatBitsToUint(ray.origin.z), s.instance);
     y.direction = uvec4(floatBitsToUint(ray.direction.x), floatBitsToUint(ray.direction.y),
@@ -36,14 +36,14 @@ FN LightVertexRecord light_vertex_record(IN(Ray) ray, IN(Surface) s, Spectrum th
     return y;
 }
 
-FN Vertex light_vertex(IN(LightVertexRecord) y, OUT(Surface) s) {
+FN Vertex path_vertex(IN(PathVertexRecord) y, OUT(Surface) s) {
     Hit hit;
     hit.instance = y.origin.w;
     hit.geometry = y.direction.w;
     hit.primitive = y.more.x;
     s = no_surface();
-    vec3 direction = light_vertex_direction(y);
-    surface_at(hit, light_vertex_origin(y), direction, s);
+    vec3 direction = path_vertex_direction(y);
+    surface_at(hit, path_vertex_origin(y), direction, s);
     return vertex_at(s, direction);
 }
 

@@ -1,0 +1,356 @@
+#include "integrators/bidirectional/bidirectional.h"
+
+#include "core/base/error.h"
+#include "core/base/registry.h"
+#include "core/photons/photon_map.h"
+#include "integrators/photon_paths/progressive.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+namespace lampyris {
+namespace {
+
+constexpr const char* kLightPaths = "integrators/bidirectional/light_subpaths.kernel.h";
+constexpr const char* kCameraPaths = "integrators/bidirectional/camera_subpaths.kernel.h";
+constexpr const char* kPixels = "integrators/bidirectional/bidirectional_pixels.kernel.h";
+constexpr const char* kMerge = "integrators/bidirectional/merge.consumer.h";
+
+constexpr uint32_t kPart = 1u << 18;          // light paths whose vertices are stored at once
+constexpr uint32_t kVerticesPerPath = 4;      // room for them at first
+constexpr uint32_t kMostVertices = 1u << 21;  // 128 MiB: lavapipe binds no larger buffers
+// Photons found by chance, each counted as several, have more noise than the heuristics assume. Counting this part of them in the
+// weights alone keeps the sum of weights at 1, and lowers the variance.
+constexpr float kStochasticShare = 0.25f;
+
+using Counters = std::array<uint32_t, kernel::BIDIRECTIONAL_COUNTERS>;
+
+class BidirectionalRender {
+ public:
+    BidirectionalRender(RenderSession& session, const BidirectionalOptions& options)
+        : session_(session),
+          device_(session.device),
+          options_(options),
+          merges_(options.radius >= 0.0),
+          pixels_(session.film.pixel_count()),
+          light_paths_(device_.compile(kLightPaths, session.scene.effects.mask())),
+          camera_paths_(device_.compile(kCameraPaths, session.scene.effects.mask())),
+          finish_(device_.compile(kPixels, session.scene.effects.mask())) {
+        describe_pass();
+        part_ = std::min(pass_.paths, kPart);
+        numbers_ = uint32_t(std::clamp(options.maxdepth, 1, 8));
+        splats_ = device_.create_buffer(splat_bytes(pixels_, options.name), "splats");
+        seen_ = device_.create_buffer(size_t(pixels_) * sizeof(glm::vec4), "radiance of camera paths");
+        last_ = device_.create_buffer(size_t(part_) * 4, "last vertices of light paths");
+        last_merged_ = device_.create_buffer(merges_ ? size_t(pixels_) * 4 : 4, "last merged vertices of pixels");
+        make_vertices(options.strategies == kernel::STRATEGIES_ALL ? part_ * kVerticesPerPath : 1);
+        make_photons(merges_ ? part_ * kVerticesPerPath : 1);
+        make_sums(merges_ ? part_ * numbers_ : 1);
+        make_queries(merges_ ? pixels_ * kVerticesPerPath : 1);
+        if (merges_) open_map();
+        run_light_paths(0, 0);  // compiles, if need be, before the clock starts
+        run_camera_paths(0);
+        run_finish(0);
+    }
+
+    void render() {
+        while (const uint32_t count = session_.next_passes()) {
+            for (uint32_t i = 0; i < count; ++i) render_pass(session_.next_pass() + i);
+            session_.passes_finished(count);
+        }
+        if (merges_) finish_statistics();
+    }
+
+ private:
+    void describe_pass() {
+        const Scene& scene = session_.scene;
+        const uint32_t full = scene.width() * scene.height();
+        pass_.seed = session_.seed;
+        pass_.sampler_kind = session_.sampler;
+        pass_.paths = options_.lightpaths > 0 ? uint32_t(options_.lightpaths) : full;
+        pass_.maxdepth = options_.maxdepth;
+        pass_.rrdepth = options_.rrdepth;
+        pass_.connections = options_.connections;
+        pass_.weights = options_.weights;
+        pass_.only_light = options_.only_light;
+        pass_.only_camera = options_.only_camera;
+        pass_.strategies = options_.strategies;
+        pass_.quantum = splat_quantum(scene);
+        pass_.brightness = float(double(pass_.paths) / double(full));
+        pass_.film_density = film_density(scene);
+    }
+
+    void open_map() {
+        map_ = create_photon_map(session_.photon_map);
+        const PhotonMapCapabilities can = map_->capabilities();
+        if (can.lossy)
+            throw InputError(
+                fmt::format("error: photon map \"{}\" may drop photons, and \"{}\" weighs them by how many there are: "
+                            "use another map",
+                            session_.photon_map, options_.name));
+        share_ = can.stochastic ? kStochasticShare : 1.0f;
+        map_->open(device_);
+        map_->prepare(consumer());
+    }
+
+    PhotonConsumer consumer() const {
+        return {kMerge,
+                session_.scene.effects.mask(),
+                session_.device_scene.get(),
+                {{"passes", passes_}, {"merged", merged_}, {"photon_sums", sums_}, {"gathered", gathered_}}};
+    }
+
+    // ---- Buffers that grow -------------------------------------------------------------------------------------------
+
+    void make_vertices(uint32_t count) {
+        pass_.capacity = count;
+        vertices_.reset();
+        vertices_ = device_.create_buffer(size_t(count) * sizeof(kernel::PathVertexRecord), "light vertices");
+    }
+    void make_photons(uint32_t count) {
+        pass_.photon_capacity = count;
+        photons_.reset();
+        photons_ = device_.create_buffer(size_t(count) * sizeof(kernel::PhotonRecord), "photons");
+    }
+    void make_sums(uint32_t count) {
+        pass_.sums_capacity = count;
+        sums_.reset();
+        sums_ = device_.create_buffer(size_t(count) * sizeof(glm::vec4), "weights of photons");
+    }
+    void make_queries(uint32_t count) {
+        pass_.query_capacity = count;
+        merged_.reset(), queries_.reset(), gathered_.reset();
+        merged_ = device_.create_buffer(size_t(count) * sizeof(kernel::PathVertexRecord), "camera vertices");
+        queries_ = device_.create_buffer(size_t(count) * sizeof(glm::vec4), "places of camera vertices");
+        gathered_ = device_.create_buffer(size_t(count) * sizeof(glm::vec4), "radiance by merging");
+    }
+
+    // ---- Kernels -----------------------------------------------------------------------------------------------------
+
+    void run_light_paths(uint32_t first, uint32_t count) {
+        const std::array<NamedBuffer, 8> buffers{{{"window", window_},
+                                                  {"passes", passes_},
+                                                  {"splats", splats_},
+                                                  {"counters", counters_},
+                                                  {"vertices", vertices_},
+                                                  {"last_vertices", last_},
+                                                  {"photons", photons_},
+                                                  {"photon_sums", sums_}}};
+        device_.run(*light_paths_, session_.device_scene.get(), buffers, first, count);
+    }
+    void run_camera_paths(uint32_t count) {
+        const std::array<NamedBuffer, 10> buffers{{{"window", window_},
+                                                   {"passes", passes_},
+                                                   {"film", session_.film.buffer()},
+                                                   {"counters", counters_},
+                                                   {"vertices", vertices_},
+                                                   {"last_vertices", last_},
+                                                   {"seen", seen_},
+                                                   {"merged", merged_},
+                                                   {"queries", queries_},
+                                                   {"last_merged", last_merged_}}};
+        device_.run(*camera_paths_, session_.device_scene.get(), buffers, 0, count);
+    }
+    void run_finish(uint32_t count) {
+        const std::array<NamedBuffer, 8> buffers{{{"window", window_},
+                                                  {"passes", passes_},
+                                                  {"film", session_.film.buffer()},
+                                                  {"splats", splats_},
+                                                  {"seen", seen_},
+                                                  {"merged", merged_},
+                                                  {"last_merged", last_merged_},
+                                                  {"gathered", gathered_}}};
+        device_.run(*finish_, session_.device_scene.get(), buffers, 0, count);
+    }
+    void upload_pass() { passes_->upload(&pass_, sizeof pass_); }
+    Counters counters() const {
+        Counters values{};
+        counters_->download(&values, sizeof values);
+        return values;
+    }
+
+    // ---- A pass ------------------------------------------------------------------------------------------------------
+
+    void render_pass(uint64_t number) {
+        pass_.number = uint32_t(number);
+        set_radius(number);
+        const kernel::FilmWindow window = session_.window(pass_.number, 1);
+        window_->upload(&window, sizeof window);
+        splats_->fill_zero();
+        splatted_ = 0;
+        query_count_ = 0;
+        kept_ = {};
+        for (uint32_t first = 0; first < pass_.paths;) {
+            pass_.splats = first >= splatted_ ? 1 : 0;
+            const uint32_t end = pass_.splats != 0 ? pass_.paths : splatted_;
+            const uint32_t count = std::min(part_, end - first);
+            if (!trace_light_paths(first, count)) continue;
+            trace_camera_paths();
+            first += count;
+        }
+        if (merges_) merge();
+        run_finish(pixels_);
+    }
+
+    double first_radius() const {
+        return options_.radius > 0.0 ? options_.radius : options_.radius_share * double(session_.scene.record.bounds.w);
+    }
+
+    void set_radius(uint64_t number) {
+        if (!merges_) return;
+        const double scene_radius = double(session_.scene.record.bounds.w);
+        const double radius = first_radius() * std::sqrt(memoryless_scale(number, options_.alpha));
+        pass_.radius = float(radius);
+        const double area = std::numbers::pi * (radius / scene_radius) * (radius / scene_radius);
+        pass_.eta = float(std::max(area * double(pass_.paths) * double(share_), 1e-30));
+    }
+
+    // False if the vertices or photons did not fit: then there is more room, or a smaller part, and the paths have to be traced
+    // again. Their splats are complete nevertheless.
+    bool trace_light_paths(uint32_t first, uint32_t count) {
+        pass_.first_path = first;
+        pass_.part_paths = count;
+        upload_pass();
+        counters_->fill_zero();
+        if (session_.scene.record.light_count == 0) return true;
+        run_light_paths(first, count);
+        splatted_ = std::max(splatted_, first + count);
+        kept_ = counters();
+        session_.photons.rays += kept_[kernel::LIGHT_RAYS];
+        bool fits = true;
+        if (kept_[kernel::LIGHT_VERTICES] > pass_.capacity)
+            fits = make_room(kept_[kernel::LIGHT_VERTICES], count, [&](uint32_t n) { make_vertices(n); });
+        if (kept_[kernel::PHOTONS_KEPT] > pass_.photon_capacity)
+            fits = make_room(kept_[kernel::PHOTONS_KEPT], count, [&](uint32_t n) { make_photons(n); }) && fits;
+        // A photon's place among the sums is its number times the paths, plus the path's.
+        if (merges_ && kept_[kernel::MOST_PHOTONS] > pass_.sums_capacity / count) {
+            numbers_ = kept_[kernel::MOST_PHOTONS] + 1;
+            make_sums(std::min(part_, kMostVertices / numbers_) * numbers_);
+            part_ = std::max(1u, std::min(part_, kMostVertices / numbers_));
+            fits = false;
+        }
+        return fits;
+    }
+
+    // Always false: the paths have to be traced again.
+    template <typename Make>
+    bool make_room(uint32_t needed, uint32_t count, Make make) {
+        if (needed <= kMostVertices || count == 1)
+            make(needed + needed / 8);
+        else
+            part_ = std::max(1u, std::min(part_, count / 2));
+        return false;
+    }
+
+    void trace_camera_paths() {
+        pass_.features = 1;
+        while (true) {
+            upload_pass();
+            Counters now = kept_;
+            now[kernel::MERGE_QUERIES] = query_count_;
+            counters_->upload(&now, sizeof now);
+            run_camera_paths(pixels_);
+            if (!merges_) return;
+            now = counters();
+            if (now[kernel::MERGE_QUERIES] <= pass_.query_capacity) {
+                query_count_ = now[kernel::MERGE_QUERIES];
+                return;
+            }
+            grow_queries(now[kernel::MERGE_QUERIES]);
+            pass_.features = 0;  // the film has them already
+        }
+    }
+
+    // More room for camera vertices; those of earlier parts stay.
+    void grow_queries(uint32_t needed) {
+        std::vector<kernel::PathVertexRecord> vertices(query_count_);
+        std::vector<glm::vec4> places(query_count_);
+        merged_->download(vertices.data(), vertices.size() * sizeof(vertices[0]));
+        queries_->download(places.data(), places.size() * sizeof(places[0]));
+        make_queries(needed + needed / 8);
+        merged_->upload(vertices.data(), vertices.size() * sizeof(vertices[0]));
+        queries_->upload(places.data(), places.size() * sizeof(places[0]));
+    }
+
+    void merge() {
+        gathered_->fill_zero();
+        if (query_count_ == 0) return;
+        // The photons of the last part are still there.
+        gather(kept_[kernel::PHOTONS_KEPT]);
+        const uint32_t last = pass_.first_path;
+        pass_.splats = 0;
+        for (uint32_t first = 0; first < last;) {
+            const uint32_t count = std::min(part_, last - first);
+            if (!trace_light_paths(first, count)) continue;
+            gather(kept_[kernel::PHOTONS_KEPT]);
+            first += count;
+        }
+    }
+
+    void gather(uint32_t count) {
+        session_.photons.emitted += pass_.part_paths;
+        session_.photons.stored += count;
+        if (count == 0) return;
+        const glm::vec3 centre(session_.scene.record.bounds);
+        const float radius = session_.scene.record.bounds.w;
+        PhotonSet set;
+        set.photons = photons_;
+        set.count = count;
+        set.queries = queries_;
+        set.query_count = query_count_;
+        set.radius = pass_.radius;
+        set.low = centre - radius;
+        set.high = centre + radius;
+        set.seed = session_.seed;
+        set.pass = pass_.number * 0x9e3779b9u + pass_.first_path;  // each part has its own grid
+        set.mean_power = session_.scene.record.light_power / float(pass_.paths);
+        map_->build(set);
+        map_->gather(consumer(), queries_, 0, query_count_);
+    }
+
+    void finish_statistics() {
+        PhotonStatistics& photons = session_.photons;
+        const PhotonMapStatistics statistics = map_->statistics();
+        session_.add_phase("construction", statistics.construction_kernel_s);
+        session_.add_phase("gathering", statistics.gathering_kernel_s);
+        photons.map_bytes += map_->memory_bytes();
+        photons.map_parameters = show_photon_map(parse_plugin_choice(session_.photon_map).name, *map_);
+        if (const auto load = map_->bucket_load())
+            photons.bucket_load_mean = load->mean, photons.bucket_load_max = load->max;
+        photons.radius_initial = first_radius();
+        photons.radius_min = photons.radius_mean = photons.radius_max = pass_.radius;
+    }
+
+    RenderSession& session_;
+    Device& device_;
+    const BidirectionalOptions options_;
+    const bool merges_;
+    const uint32_t pixels_;
+    kernel::BidirectionalPass pass_{};
+    uint32_t part_ = 0;
+    uint32_t numbers_ = 1;      // of photons of a path for which there is room
+    uint32_t splatted_ = 0;     // light paths of this pass whose splats are complete
+    uint32_t query_count_ = 0;  // camera vertices of this pass that are merged
+    float share_ = 1.0f;        // of photons, in weights
+    Counters kept_{};           // after the last part of light paths
+    KernelHandle light_paths_, camera_paths_, finish_;
+    BufferHandle window_ = device_.create_buffer(sizeof(kernel::FilmWindow), "film window");
+    BufferHandle passes_ = device_.create_buffer(sizeof(kernel::BidirectionalPass), "pass");
+    BufferHandle counters_ = device_.create_buffer(sizeof(Counters), "counters");
+    BufferHandle splats_, seen_, last_, last_merged_, vertices_, photons_, sums_, merged_, queries_, gathered_;
+    std::unique_ptr<PhotonMap> map_;
+};
+
+}  // namespace
+
+void render_bidirectional(RenderSession& session, const BidirectionalOptions& options) {
+    BidirectionalRender(session, options).render();
+}
+
+}  // namespace lampyris

@@ -1,0 +1,28 @@
+// The passes of `bdpt`, `vcm` and `bpm`.
+#pragma once
+
+#include "core/render/render_session.h"
+#include "integrators/bidirectional/bidirectional_host.h"
+
+#include <cstdint>
+
+namespace lampyris {
+
+struct BidirectionalOptions {
+    const char* name = "";
+    int maxdepth = 5;
+    int rrdepth = 3;
+    int lightpaths = -1;                    // in each pass; -1: as many as the picture has pixels
+    int connections = -1;                   // of a camera vertex with a light path; -1: all
+    uint32_t weights = 0;                   // kernel::WEIGHTS_*
+    int only_light = -1, only_camera = -1;  // strategy, as counts of vertices; -1: all
+    uint32_t strategies = 0;                // kernel::STRATEGIES_*
+    // Merging: the radius of the first pass in scene units, or 0 for `radius_share` of the scene's radius; negative: none.
+    double radius = -1.0, radius_share = 0.0;
+    double alpha = 0.75;  // of its decrease (Knaus and Zwicker 2011)
+};
+
+// Renders until the session's budget is spent. Throws InputError, MachineError.
+void render_bidirectional(RenderSession& session, const BidirectionalOptions& options);
+
+}  // namespace lampyris
