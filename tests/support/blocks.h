@@ -28,8 +28,10 @@ inline Block block(const Rendered& image, int x0, int y0, int x1, int y1) {
 }
 inline Block whole(const Rendered& image) { return block(image, 0, 0, image.width, image.height); }
 
-// Compares blocks of size x size pixels and the whole images. False alarms: kAlpha in all, by Sidak's correction.
-inline void expect_same_blocks(const Rendered& image, const Rendered& expected, int size, const std::string& name) {
+// Compares blocks of size x size pixels and the whole images. False alarms: kAlpha in all, by Sidak's correction. `bias`: allowed in
+// addition, relative to a block's mean.
+inline void expect_same_blocks(const Rendered& image, const Rendered& expected, int size, const std::string& name,
+                               double bias = 0.0) {
     ASSERT_EQ(image.width, expected.width);
     ASSERT_EQ(image.height, expected.height);
     const int columns = (image.width + size - 1) / size, rows = (image.height + size - 1) / size;
@@ -38,7 +40,7 @@ inline void expect_same_blocks(const Rendered& image, const Rendered& expected, 
     const auto compare = [&](const Block& a, const Block& b, const std::string& where) {
         // 1e-6: pixels without variance, such as those of an empty background.
         const double error = std::sqrt(a.variance + b.variance) + 1e-6;
-        const bool same = std::abs(a.mean - b.mean) < threshold * error;
+        const bool same = std::abs(a.mean - b.mean) < threshold * error + bias * b.mean;
         EXPECT_TRUE(same) << where << ": " << a.mean << ", expected " << b.mean << ", standard error " << error;
         differs = differs || !same;
     };

@@ -16,7 +16,8 @@ constexpr PbrtParameter kMaxDepth{"maxdepth", kInteger, "5", "maxdepth", ""};
 constexpr PbrtParameter kLightSampler{"lightsampler", kString, "bvh", "", "lights are chosen by their power"};
 constexpr PbrtParameter kRegularize{"regularize", kBool, "false", "", "path regularization", true};
 constexpr std::string_view kBothAreSampled = "lights and directions are both sampled";
-constexpr std::string_view kNoMutations = "samples are independent of each other, as many as the Sampler says";
+constexpr std::string_view kOfAPass =
+    "there are as many passes as the Sampler says, each with `mutations` and `bootstrap` of its own";
 constexpr std::string_view kNoFunction = "no function is sampled";
 constexpr std::string_view kNoStrategies =
     "one strategy alone is shown by --set integrator.s and integrator.t, without weights by integrator.weights=none";
@@ -30,13 +31,14 @@ constexpr PbrtParameter kOfBdpt[] = {kMaxDepth,
                                      {"visualizestrategies", kBool, "false", "", kNoStrategies},
                                      {"visualizeweights", kBool, "false", "", kNoStrategies},
                                      kRegularize};
-constexpr PbrtParameter kOfMlt[] = {kMaxDepth,
-                                    {"bootstrapsamples", kInteger, "100000", "", kNoMutations},
-                                    {"chains", kInteger, "1000", "", kNoMutations},
-                                    {"mutationsperpixel", kInteger, "100", "", kNoMutations},
-                                    {"sigma", kFloat, "0.01", "", kNoMutations},
-                                    {"largestepprobability", kFloat, "0.3", "", kNoMutations},
-                                    kRegularize};
+constexpr PbrtParameter kOfMlt[] = {
+    kMaxDepth,
+    {"bootstrapsamples", kInteger, "100000", "", kOfAPass},
+    {"chains", kInteger, "1000", "chains", ""},
+    {"mutationsperpixel", kInteger, "100", "", kOfAPass},
+    {"sigma", kFloat, "0.01", "", "sizes of small steps are between stepmin and stepmax"},
+    {"largestepprobability", kFloat, "0.3", "largestep", ""},
+    kRegularize};
 constexpr PbrtParameter kOfAo[] = {
     {"cossample", kBool, "true", "", "directions are always cosine-distributed: the same image, with less noise"},
     {"maxdistance", kFloat, "inf", "distance", ""}};
@@ -55,7 +57,7 @@ constexpr PbrtIntegrator kIntegrators[] = {
     {"function", "path", "pbrt-v4's measures a sampler's error and renders no image; this renders the scene", false,
      kOfFunction},
     {"lightpath", "light", "lamps and the sky are seen directly, too; pbrt-v4 leaves them out", true, kDepthAlone},
-    {"mlt", "path", "independent samples, not mutations: the same image, with other noise", false, kOfMlt},
+    {"mlt", "mlt", "", true, kOfMlt},
     {"path", "path", "", true, kOfPath},
     {"randomwalk", "path",
      "directions are sampled by the materials, and lights are sampled, too: the same image, with less noise, except "

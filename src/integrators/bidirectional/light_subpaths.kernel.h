@@ -3,6 +3,8 @@
 #include "core/kernel/scene.h"
 
 #include "core/kernel/film.h"
+#include "core/kernel/photon.h"
+#include "core/kernel/visible_point.h"
 #include "integrators/bidirectional/bidirectional_layout.h"
 
 BUFFER_RO(0, FilmWindow, window)
@@ -15,8 +17,6 @@ BUFFER_RW(6, PhotonRecord, photons)
 BUFFER_RW(7, vec4, photon_sums)  // by the photons' keys: MisSums, and the number of the scattering vertex
 
 #include "integrators/bidirectional/lens_connection.h"
-#include "core/kernel/photon.h"
-#include "core/kernel/visible_point.h"
 #include "integrators/bidirectional/path_vertex.h"
 #include "integrators/bidirectional/connect.h"
 

@@ -48,7 +48,6 @@ class MltRender {
           pixels_(session.film.pixel_count()),
           chains_(device_.compile(kChains, session.scene.effects.mask())),
           finish_(device_.compile(kPixels, session.scene.effects.mask())) {
-        const kernel::CameraRecord& camera = session.scene.record.camera;
         const double full = double(session.scene.width()) * double(session.scene.height());
         constexpr double kMost = std::numeric_limits<uint32_t>::max() / 2;
         const auto wanted = uint32_t(std::clamp(std::ceil(full * double(params.mutations)), 1.0, kMost));
@@ -63,11 +62,9 @@ class MltRender {
         mlt_.quantum = 0x1p-24f;
         mlt_.samples = uint32_t(params.direct);
 
-        // One light path, and one camera ray that is uniform over the picture and its border.
-        const float area = (float(session.scene.width()) + 2.0f * camera.filter_radius_x) *
-                           (float(session.scene.height()) + 2.0f * camera.filter_radius_y);
+        // One light path, and one camera ray for all pixels.
         pass_.paths = 1;
-        pass_.film_density = 1.0f / area;
+        pass_.film_density = film_density(session.scene) / float(full);
         pass_.maxdepth = params.maxdepth;
         pass_.weights = params.weights;
         pass_.connections = -1;

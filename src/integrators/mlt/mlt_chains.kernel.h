@@ -18,16 +18,22 @@ BUFFER_RO(8, uint, chosen)       // of each chain: its seed
 #include "integrators/mlt/mlt_path.h"
 
 // Adds a path to the picture.
-FN void mlt_splat(vec3 color, vec2 raster, float weight, uint key) {
+FN void mlt_splat(vec3 color, vec2 raster, bool one_pixel, float weight, uint key) {
     if (!(weight > 0.0f)) return;
-    float filter_weight;
-    vec2 u = vec2(unit_float(hash_combine(key, 1u)), unit_float(hash_combine(key, 2u)));
-    ivec2 pixel = splat_pixel(raster, u, filter_weight);
+    float filter_weight = 1.0f;
+    ivec2 pixel = ivec2(int(raster.x), int(raster.y));
+    if (!one_pixel) {
+        vec2 u = vec2(unit_float(hash_combine(key, 1u)), unit_float(hash_combine(key, 2u)));
+        pixel = splat_pixel(raster, u, filter_weight);
+    }
     FilmWindow w = window[0];
     int x = pixel.x - int(w.x);
     int y = pixel.y - int(w.y);
     if (x < 0 || y < 0 || x >= int(w.width) || y >= int(w.height)) return;
     splat_add(uint(y) * w.width + uint(x), color * (weight * filter_weight), mlt[0].quantum, key);
+}
+FN void mlt_splat_state(IN(MltState) state, uint key) {
+    mlt_splat(state.color, state.raster, state.kind >> 16u != 0u, state.weight, key);
 }
 
 // The number of scattering vertices of a seed's path: seeds are shared out evenly.
@@ -42,7 +48,7 @@ KERNEL(mlt_chains) {
     state.luminance = 0.0f;
     state.raster = vec2(0.0f);
     state.weight = 0.0f;
-    state.depth = seed_depth(seed);
+    state.kind = seed_depth(seed);
     if (mutates) state = states[index];
     uint dimensions = mlt_dimensions(pass.depths);
     uint large_steps = 0u;
@@ -62,7 +68,7 @@ KERNEL(mlt_chains) {
             large_steps += primary_large[0];
         }
         primary_key[0] = key;
-        MltSample proposed = mlt_sample(int(state.depth));
+        MltSample proposed = mlt_sample(int(state.kind & 0xffffu));
         float acceptance = 1.0f;
         if (mutates) {
             // A proposal that is black or not finite is rejected, and the current path counts.
@@ -71,7 +77,7 @@ KERNEL(mlt_chains) {
         }
         if (u_accept < acceptance) {
             if (mutates) {
-                mlt_splat(state.color, state.raster, state.weight, key);
+                mlt_splat_state(state, key);
                 large_accepted += primary_large[0];
                 small_accepted += 1u - primary_large[0];
             }
@@ -79,9 +85,10 @@ KERNEL(mlt_chains) {
             state.color = proposed.luminance > 0.0f ? proposed.color / proposed.luminance : vec3(0.0f);
             state.luminance = proposed.luminance;
             state.raster = proposed.raster;
+            state.kind = (state.kind & 0xffffu) | proposed.one_pixel << 16u;
             state.weight = mutates ? acceptance : 0.0f;
         } else if (acceptance > 0.0f) {
-            mlt_splat(proposed.color / proposed.luminance, proposed.raster, acceptance, key);
+            mlt_splat(proposed.color / proposed.luminance, proposed.raster, proposed.one_pixel != 0u, acceptance, key);
         }
     }
     if (i != end) REPORT_UNFINISHED();
@@ -89,7 +96,7 @@ KERNEL(mlt_chains) {
         luminances[index] = state.luminance;
     } else {
         if (mutates) {
-            mlt_splat(state.color, state.raster, state.weight, hash_combine(primary_key[0], 5u));
+            mlt_splat_state(state, hash_combine(primary_key[0], 5u));
             state.weight = 0.0f;
         }
         states[index] = state;

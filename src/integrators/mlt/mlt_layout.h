@@ -27,11 +27,11 @@ CONST int MLT_LEAST_DEPTH = 2;
 
 // The current path of a chain.
 struct MltState {
-    vec3 color;       // contribution over its luminance: linear Rec. 709
+    vec3 color;       // of MltSample, over its luminance
     float luminance;  // 0: no path
     vec2 raster;
     float weight;  // not yet splatted
-    uint depth;    // scattering vertices
+    uint kind;     // scattering vertices, and MltSample's one_pixel << 16
 };
 
 // Words of `counters`.

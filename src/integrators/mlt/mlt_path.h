@@ -8,25 +8,27 @@
 
 // What a path contributes to the picture, over the density of its numbers.
 struct MltSample {
-    vec3 color;       // radiance times the area of the picture (pixels): linear Rec. 709
-    float luminance;  // of it; 0: no path
+    vec3 color;  // radiance times the number of pixels: linear Rec. 709; negative under the filter's negative lobes
+    float luminance;  // its size; 0: no path
     vec2 raster;
+    uint one_pixel;  // 1: it belongs to the pixel at `raster`; 0: to all that the filter there reaches
 };
 
 CONST int MLT_NO_ROULETTE = 1000000;
 
-// Film points are uniform over the picture and a border from which the pixel filter reaches it.
-FN vec2 mlt_raster() {
+FN float mlt_pixels() {
     CameraRecord camera = scene[0].camera;
-    vec2 u = primary_2d(MLT_RASTER);
-    float x = lerp_of(u.x, -camera.filter_radius_x, float(camera.resolution_x) + camera.filter_radius_x);
-    float y = lerp_of(u.y, -camera.filter_radius_y, float(camera.resolution_y) + camera.filter_radius_y);
-    return vec2(x, y);
+    return float(camera.resolution_x) * float(camera.resolution_y);
 }
-FN float mlt_film_area() {
+
+// A pixel, uniform over the picture, and a film point of its filter, as camera_sample chooses one.
+FN vec2 mlt_film_point(OUT(vec2) pixel, OUT(float) weight) {
     CameraRecord camera = scene[0].camera;
-    return (float(camera.resolution_x) + 2.0f * camera.filter_radius_x) *
-           (float(camera.resolution_y) + 2.0f * camera.filter_radius_y);
+    uvec2 bits = primary_bits_2d(MLT_RASTER);
+    pixel =
+        vec2(float(mul_high(bits.x, camera.resolution_x)) + 0.5f, float(mul_high(bits.y, camera.resolution_y)) + 0.5f);
+    vec2 rest = unit_floats(uvec2(bits.x * camera.resolution_x, bits.y * camera.resolution_y));
+    return pixel + pixel_filter_sample(rest, weight);
 }
 FN vec2 mlt_lens() { return CALLED_FOR(EFFECT_DEPTH_OF_FIELD) ? primary_2d(MLT_LENS) : vec2(0.5f); }
 
@@ -74,6 +76,8 @@ FN MltSample mlt_sample(int depth) {
     sample_.color = vec3(0.0f);
     sample_.luminance = 0.0f;
     sample_.raster = vec2(0.0f);
+    sample_.one_pixel = 1u;
+    float weight = 1.0f;
     int strategies = depth + 2;
     int from_light = min(int(primary(MLT_STRATEGY) * float(strategies)), strategies - 1);
     int from_camera = depth + 2 - from_light;
@@ -106,8 +110,8 @@ FN MltSample mlt_sample(int depth) {
             if (!complete) continue;
             path = light_path_begin(start, depth);
         } else {
-            sample_.raster = mlt_raster();
-            path = camera_path_begin(camera_ray(sample_.raster, mlt_lens()), depth);
+            vec2 film_point = mlt_film_point(sample_.raster, weight);
+            path = camera_path_begin(camera_ray(film_point, mlt_lens()), depth);
         }
         int stride = int(MLT_VERTEX_NUMBERS);
         uint first = MLT_VERTICES;
@@ -130,24 +134,25 @@ FN MltSample mlt_sample(int depth) {
     }
 
     if (from_light == 0) {
-        value = value * mlt_film_area();
+        value = value * mlt_pixels();
     } else if (!complete) {
         return sample_;
     } else if (from_camera == 1) {
         CameraConnection c;
         if (!camera_connect(y.surface.position, mlt_lens(), c) || !splat_reaches(c.raster)) return sample_;
         sample_.raster = c.raster;
+        sample_.one_pixel = 0u;
         value = connect_to_lens(light_path, y.surface, y.vertex, c);
     } else if (from_light == 1) {
         value =
             connect_to_light(camera_path, s, v, primary_bits(MLT_CONNECTION), primary_bits_2d(MLT_CONNECTION + 1u)) *
-            mlt_film_area();
+            mlt_pixels();
     } else {
-        value = connect_to_vertex(camera_path, s, v, y) * mlt_film_area();
+        value = connect_to_vertex(camera_path, s, v, y) * mlt_pixels();
     }
     // The sensor's limit is one of radiance.
-    vec3 color = film_sensor(value * (float(strategies) / mlt_film_area())) * mlt_film_area();
-    float l = luminance(color);
+    vec3 color = film_sensor(value * (float(strategies) / mlt_pixels())) * (weight * mlt_pixels());
+    float l = abs(luminance(color));
     if (!(l > 0.0f) || !is_finite3(color)) return sample_;
     sample_.color = color;
     sample_.luminance = l;
