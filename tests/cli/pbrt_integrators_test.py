@@ -60,7 +60,10 @@ def test_pbrts_names_and_parameters_render(program, scene, tmp_path, name):
         "photonsperiteration",
         "radius",
         "regularize",
+        "bootstrapsamples",
         "chains",
+        "mutationsperpixel",
+        "sigma",
         "largestepprobability",
     }
     given = {word.split()[1] for word in parameters.split('"') if " " in word.strip() and word.strip().count(" ") == 1}

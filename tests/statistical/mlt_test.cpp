@@ -20,14 +20,6 @@ class Metropolis : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Backends, Metropolis, testing::ValuesIn(usable_backends()),
                          [](const auto& info) { return name_of(info.param); });
 
-// |t| that Student's distribution with `dof` degrees of freedom exceeds with probability p (two-sided), from the normal threshold
-// (Abramowitz and Stegun, 26.7.5).
-double student_threshold(double p, double dof) {
-    const double z = normal_threshold(p), z2 = z * z;
-    return z * (1 + (z2 + 1) / (4 * dof) + (5 * z2 * z2 + 16 * z2 + 3) / (96 * dof * dof) +
-                (3 * z2 * z2 * z2 + 19 * z2 * z2 + 17 * z2 - 15) / (384 * dof * dof * dof));
-}
-
 // Means of the picture's quarters, and of the whole.
 constexpr int kParts = 5;
 std::array<double, kParts> parts_of(const Rendered& image) {
@@ -81,7 +73,7 @@ TEST_P(MetropolisScenes, AgreeWithPathTracing) {
     if (scene == "reference/sds-point" || scene == "reference/sds-pool") return;  // path never finds their light
     RenderSettings settings = settings_of("cpu", "path:maxdepth=6", 512, 16);
     const Rendered path = render_file(scene_path(scene), settings);
-    settings.integrator = "mlt:maxdepth=6,mutations=32,bootstrap=4096,chains=512,direct=16";
+    settings.integrator = "mlt:maxdepth=6,mutationsperpixel=32,bootstrapsamples=4096,chains=512,direct=16";
     settings.samples = 2;
     expect_same_parts(scene, settings, 16, path, 0.05);
 }
@@ -92,7 +84,7 @@ TEST_P(Metropolis, IsRightAfterOneMutation) {
     RenderSettings settings = settings_of("cpu", "path:maxdepth=6", 1024, 8);
     const Rendered path = render_file(scene_path(scene), settings);
     settings.backend = GetParam();
-    settings.integrator = "mlt:maxdepth=6,mutations=8,bootstrap=500,chains=512,direct=16";
+    settings.integrator = "mlt:maxdepth=6,mutationsperpixel=8,bootstrapsamples=500,chains=512,direct=16";
     settings.samples = GetParam() == "vulkan" ? 8 : 64;
     expect_same_parts(scene, settings, 16, path, 0.01);
 }
@@ -103,15 +95,16 @@ TEST_P(Metropolis, StepsChangeNoMean) {
     const Rendered path = render_file(scene_path(scene), settings);
     settings.backend = GetParam();
     settings.samples = 4;
-    for (const char* choice : {"largestep=0", "largestep=1", "stepmin=0.1,stepmax=0.4", "weights=power", "chains=3"}) {
-        settings.integrator = fmt::format("mlt:maxdepth=6,mutations=32,bootstrap=2000,{}", choice);
+    for (const char* choice :
+         {"largestepprobability=0", "largestepprobability=1", "sigma=0.3", "weights=power", "chains=3"}) {
+        settings.integrator = fmt::format("mlt:maxdepth=6,mutationsperpixel=32,bootstrapsamples=2000,{}", choice);
         expect_same_parts(scene, settings, 16, path, 0.02);
     }
 }
 
 // A pass is one sample of each pixel, and passes are independent: their spread is that of renderings with other seeds.
 TEST(Metropolis, PassesTellTheirError) {
-    RenderSettings settings = settings_of("cpu", "mlt:maxdepth=6,mutations=16,bootstrap=2000", 16, 8);
+    RenderSettings settings = settings_of("cpu", "mlt:maxdepth=6,mutationsperpixel=16,bootstrapsamples=2000", 16, 8);
     Mean estimated, luminance;
     constexpr int kRuns = 48;
     std::vector<Mean> pixels(64);

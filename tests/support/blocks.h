@@ -12,6 +12,14 @@
 
 namespace lampyris::test {
 
+// |t| that Student's distribution with `dof` degrees of freedom exceeds with probability p (two-sided), from the normal threshold
+// (Abramowitz and Stegun, 26.7.5).
+inline double student_threshold(double p, double dof) {
+    const double z = normal_threshold(p), z2 = z * z;
+    return z * (1 + (z2 + 1) / (4 * dof) + (5 * z2 * z2 + 16 * z2 + 3) / (96 * dof * dof) +
+                (3 * z2 * z2 * z2 + 19 * z2 * z2 + 17 * z2 - 15) / (384 * dof * dof * dof));
+}
+
 // A block's mean and the variance of that mean. Pixels are taken as independent: light paths add to a pixel as a Poisson process
 // does, and to its neighbours by other vertices.
 struct Block {

@@ -16,8 +16,6 @@ constexpr PbrtParameter kMaxDepth{"maxdepth", kInteger, "5", "maxdepth", ""};
 constexpr PbrtParameter kLightSampler{"lightsampler", kString, "bvh", "", "lights are chosen by their power"};
 constexpr PbrtParameter kRegularize{"regularize", kBool, "false", "", "path regularization", true};
 constexpr std::string_view kBothAreSampled = "lights and directions are both sampled";
-constexpr std::string_view kOfAPass =
-    "there are as many passes as the Sampler says, each with `mutations` and `bootstrap` of its own";
 constexpr std::string_view kNoFunction = "no function is sampled";
 constexpr std::string_view kNoStrategies =
     "one strategy alone is shown by --set integrator.s and integrator.t, without weights by integrator.weights=none";
@@ -31,14 +29,13 @@ constexpr PbrtParameter kOfBdpt[] = {kMaxDepth,
                                      {"visualizestrategies", kBool, "false", "", kNoStrategies},
                                      {"visualizeweights", kBool, "false", "", kNoStrategies},
                                      kRegularize};
-constexpr PbrtParameter kOfMlt[] = {
-    kMaxDepth,
-    {"bootstrapsamples", kInteger, "100000", "", kOfAPass},
-    {"chains", kInteger, "1000", "chains", ""},
-    {"mutationsperpixel", kInteger, "100", "", kOfAPass},
-    {"sigma", kFloat, "0.01", "", "sizes of small steps are between stepmin and stepmax"},
-    {"largestepprobability", kFloat, "0.3", "largestep", ""},
-    kRegularize};
+constexpr PbrtParameter kOfMlt[] = {kMaxDepth,
+                                    {"bootstrapsamples", kInteger, "100000", "bootstrapsamples", ""},
+                                    {"chains", kInteger, "1000", "chains", ""},
+                                    {"mutationsperpixel", kInteger, "100", "mutationsperpixel", ""},
+                                    {"sigma", kFloat, "0.01", "sigma", ""},
+                                    {"largestepprobability", kFloat, "0.3", "largestepprobability", ""},
+                                    kRegularize};
 constexpr PbrtParameter kOfAo[] = {
     {"cossample", kBool, "true", "", "directions are always cosine-distributed: the same image, with less noise"},
     {"maxdistance", kFloat, "inf", "distance", ""}};

@@ -258,6 +258,7 @@ RunRecord Rendering::State::record_of(const RenderSession& session) const {
     run.progress = session.progress();
     run.ended = session.ended();
     run.phases = session.phases();
+    run.counts = session.counts();
     run.device_statistics = device->statistics();
     run.parse_s = loaded.parse_s;
     run.scene_s = scene_s;

@@ -84,6 +84,11 @@ class RenderSession {
     // To be called if a pass threw Cancelled: the film's contents count, the pass does not.
     void pass_was_cancelled() { interrupted_ = true; }
 
+    // How often something happened ("connections_visible", ...), or another number about the rendering, for the statistics.
+    void add_count(const std::string& name, double count) { counts_[name] += count; }
+    void set_count(const std::string& name, double value) { counts_[name] = value; }
+    const std::map<std::string, double>& counts() const { return counts_; }
+
     // Seconds of a phase ("eye_pass", "photon_tracing", ...).
     void add_phase(const std::string& name, double seconds) { phases_[name] += seconds; }
     const std::map<std::string, double>& phases() const { return phases_; }
@@ -98,7 +103,7 @@ class RenderSession {
     BudgetLimits limits_;
     RenderProgress progress_;
     std::vector<ErrorPoint> history_;  // one point per evaluation of the film
-    std::map<std::string, double> phases_;
+    std::map<std::string, double> phases_, counts_;
     Clock::time_point slice_start_{};
     uint64_t first_pass_ = 0;
     double seconds_per_pass_ = 0.0;

@@ -48,7 +48,7 @@ struct RunRecord {
     RenderEnd ended = RenderEnd::kPasses;
     double total_s = 0.0;  // including reading the scene and loading it onto the device
     double parse_s = 0.0, scene_s = 0.0;
-    std::map<std::string, double> phases;
+    std::map<std::string, double> phases, counts;
     DeviceStatistics device_statistics;
     FilmSummary film;
     std::vector<ConvergencePoint> convergence;

@@ -83,6 +83,8 @@ size_t peak_resident_bytes() {
 nlohmann::ordered_json statistics_json(const RunRecord& run) {
     Json phases = Json::object();
     for (const auto& [name, seconds] : run.phases) phases[name] = seconds;
+    Json counts = Json::object();
+    for (const auto& [name, value] : run.counts) counts[name] = value;
     Json kernels = Json::object();
     for (const auto& [name, seconds] : run.device_statistics.kernel_s) kernels[name] = seconds;
     Json spirv_bytes = Json::object();
@@ -122,6 +124,7 @@ nlohmann::ordered_json statistics_json(const RunRecord& run) {
         {"photons_stored", run.photons.stored},
         {"photons_lost", run.photons.lost},
         {"photon_map_bytes", run.photons.map_bytes},
+        {"counts", counts},
         {"peak_memory_bytes", peak_resident_bytes()},
         {"device_memory_bytes", run.device_statistics.peak_memory_bytes},
         {"estimated_error", number(run.progress.estimated_error)},

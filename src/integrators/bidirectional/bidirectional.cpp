@@ -235,6 +235,11 @@ class BidirectionalRender {
             part_ = std::max(1u, std::min(part_, kMostVertices / numbers_));
             fits = false;
         }
+        if (fits && pass_.splats != 0) {
+            session_.add_count("light_paths", count);
+            session_.add_count("light_vertices", kept_[kernel::LIGHT_VERTICES]);
+        }
+        if (pass_.splats != 0) session_.add_count("splats", kept_[kernel::LIGHT_SPLATS]);
         return fits;
     }
 
@@ -256,9 +261,11 @@ class BidirectionalRender {
             now[kernel::MERGE_QUERIES] = query_count_;
             counters_->upload(&now, sizeof now);
             run_camera_paths(pixels_);
-            if (!merges_) return;
             now = counters();
             if (now[kernel::MERGE_QUERIES] <= pass_.query_capacity) {
+                session_.add_count("connections_tried", now[kernel::CONNECTIONS_TRIED]);
+                session_.add_count("connections_visible", now[kernel::CONNECTIONS_VISIBLE]);
+                session_.add_count("camera_vertices_merged", now[kernel::MERGE_QUERIES] - query_count_);
                 query_count_ = now[kernel::MERGE_QUERIES];
                 return;
             }

@@ -40,6 +40,18 @@ std::vector<uint32_t> resample(const std::vector<float>& luminances, double sum,
     return chosen;
 }
 
+// The mean of passes, and its standard error; 0 after a single pass.
+struct PassMean {
+    double count = 0.0, mean = 0.0, squares = 0.0;
+    void add(double x) {
+        count += 1.0;
+        const double before = x - mean;
+        mean += before / count;
+        squares += before * (x - mean);
+    }
+    double error() const { return count > 1.0 ? std::sqrt(squares / (count - 1.0) / count) : 0.0; }
+};
+
 class MltRender {
  public:
     MltRender(RenderSession& session, const MltParams& params)
@@ -50,15 +62,14 @@ class MltRender {
           finish_(device_.compile(kPixels, session.scene.effects.mask())) {
         const double full = double(session.scene.width()) * double(session.scene.height());
         constexpr double kMost = std::numeric_limits<uint32_t>::max() / 2;
-        const auto wanted = uint32_t(std::clamp(std::ceil(full * double(params.mutations)), 1.0, kMost));
+        const auto wanted = uint32_t(std::clamp(std::ceil(full * double(params.mutationsperpixel)), 1.0, kMost));
         mlt_.depths = uint32_t(std::max(params.maxdepth - kernel::MLT_LEAST_DEPTH + 1, 0));
         mlt_.chains = std::min(uint32_t(params.chains), wanted);
         iterations_ = (wanted + mlt_.chains - 1) / mlt_.chains;
-        seeds_ = params.bootstrap >= 0 ? uint32_t(params.bootstrap) : std::max(wanted / 4, kLeastSeeds);
+        seeds_ = params.bootstrapsamples >= 0 ? uint32_t(params.bootstrapsamples) : std::max(wanted / 4, kLeastSeeds);
         seeds_ = std::max(seeds_ / std::max(mlt_.depths, 1u), 1u) * mlt_.depths;  // the same number for each depth
-        mlt_.step_min = std::min(params.stepmin, params.stepmax);
-        mlt_.step_max = params.stepmax;
-        mlt_.large_step = params.largestep;
+        mlt_.sigma = params.sigma;
+        mlt_.large_step = params.largestepprobability;
         mlt_.quantum = 0x1p-24f;
         mlt_.samples = uint32_t(params.direct);
 
@@ -128,6 +139,15 @@ class MltRender {
         std::array<uint32_t, kernel::MLT_COUNTERS> counters{};
         counters_->download(&counters, sizeof counters);
         session_.photons.rays += counters[kernel::MLT_RAYS];
+        const double mutations = double(mlt_.chains) * double(iterations_), large = counters[kernel::MLT_LARGE_STEPS];
+        session_.add_count("bootstrap_samples", seeds_);
+        session_.add_count("large_steps", large);
+        session_.add_count("large_steps_accepted", counters[kernel::MLT_LARGE_ACCEPTED]);
+        session_.add_count("small_steps", sum > 0.0 ? mutations - large : 0.0);
+        session_.add_count("small_steps_accepted", counters[kernel::MLT_SMALL_ACCEPTED]);
+        brightness_.add(brightness / (double(session_.scene.width()) * double(session_.scene.height())));
+        session_.set_count("brightness", brightness_.mean);
+        session_.set_count("brightness_error", brightness_.error());
     }
 
     static uint32_t hash_of(uint32_t x) {
@@ -173,6 +193,7 @@ class MltRender {
     kernel::BidirectionalPass pass_{};
     kernel::MltPass mlt_{};
     uint32_t iterations_ = 0, seeds_ = 0;
+    PassMean brightness_;  // mean luminance of the picture, of paths with MLT_LEAST_DEPTH vertices or more
     KernelHandle chains_, finish_;
     BufferHandle window_ = device_.create_buffer(sizeof(kernel::FilmWindow), "film window");
     BufferHandle passes_ = device_.create_buffer(sizeof(kernel::BidirectionalPass), "pass");

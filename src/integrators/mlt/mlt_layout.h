@@ -9,13 +9,13 @@ struct MltPass {
     uint iterations;  // mutations of each chain in this run
     uint first;       // number of the first one
     uint chains;
-    uint depths;     // numbers of scattering vertices, from MLT_LEAST_DEPTH on
-    float step_min;  // sizes of small steps
-    float step_max;
+    uint depths;       // numbers of scattering vertices, from MLT_LEAST_DEPTH on
+    float sigma;       // standard deviation of small steps
     float large_step;  // probability
     float quantum;     // of splats
     float brightness;  // luminance of the picture over the number of mutations for each pixel, for mlt_pixels
     uint samples;      // of each pixel for direct light, for mlt_pixels
+    uint unused;
 };
 
 CONST uint MLT_SEEDS = 0u;   // finds the luminance of independent paths

@@ -1,5 +1,6 @@
 // Primary sample space: a path is a vector of numbers, which small and large steps mutate (Kelemen, Szirmay-Kalos, Antal and
-// Csonka 2002, "A Simple and Robust Mutation Strategy for the Metropolis Light Transport Algorithm").
+// Csonka 2002, "A Simple and Robust Mutation Strategy for the Metropolis Light Transport Algorithm"). Small steps are normally
+// distributed, as pbrt-v4's.
 //
 // Numbers are integers of 32 bits, so that steps wrap around exactly. A mutation is a function of (chain, iteration, number): it
 // is computed when the path needs it, and again when it is accepted.
@@ -17,12 +18,12 @@ FN uint mlt_dimensions(uint depths) { return MLT_VERTICES + MLT_VERTEX_NUMBERS *
 FN uint primary_bits(uint dimension) {
     uvec3 bits = pcg3d(uvec3(primary_key[0], dimension, 0x2c1b3c6du));
     if (primary_large[0] != 0u) return bits.x;
-    // Sizes of steps are exponentially distributed between step_min and step_max.
-    MltPass pass = mlt[0];
-    float size = pass.step_max * exp_of(unit_float(bits.x) * log_of(pass.step_min / pass.step_max));
-    uint step = uint(size * 4294967040.0f);
-    uint current = numbers[dimension * pass.chains + primary_chain[0]];
-    return (bits.y & 1u) != 0u ? current + step : current - step;
+    // Box and Muller 1958.
+    float across = cos_of(TWO_PI * unit_float(bits.y));
+    float size = mlt[0].sigma * sqrt(-2.0f * log_of(1.0f - unit_float(bits.x))) * abs(across);
+    uint step = uint((size - floor(size)) * 4294967040.0f);
+    uint current = numbers[dimension * mlt[0].chains + primary_chain[0]];
+    return across > 0.0f ? current + step : current - step;
 }
 
 FN float primary(uint dimension) { return unit_float(primary_bits(dimension)); }

@@ -6,14 +6,13 @@
 
 #define MLT_PARAMS(P)                                                                                            \
     P(int, maxdepth, 5, 0, 1000, "most scattering vertices of a path, specular ones included")                   \
-    P(float, mutations, 8, 0.001f, 100000, "mutations in each pass, for each pixel of the picture")              \
-    P(int, bootstrap, -1, -1, 100000000,                                                                         \
+    P(int, mutationsperpixel, 8, 1, 1000000, "mutations in each pass, for each pixel of the picture")            \
+    P(int, bootstrapsamples, -1, -1, 100000000,                                                                  \
       "independent paths in each pass, from which chains start and by which the picture's brightness is known; " \
       "-1: a fourth of the mutations, at least 16384")                                                           \
     P(int, chains, 16384, 1, 10000000, "chains in each pass, at most as many as mutations")                      \
-    P(float, largestep, 0.3f, 0, 1, "probability of a mutation that is independent of the current path")         \
-    P(float, stepmin, 0.0009765625f, 1e-8f, 0.5f, "least size of the other mutations")                           \
-    P(float, stepmax, 0.015625f, 1e-8f, 0.5f, "largest size of the other mutations")                             \
+    P(float, largestepprobability, 0.3f, 0, 1, "of a mutation that is independent of the current path")          \
+    P(float, sigma, 0.01f, 1e-7f, 1, "standard deviation of the other mutations, of numbers between 0 and 1")    \
     P(int, direct, 4, 1, 4096, "samples of a pixel in each pass, for light that scatters at most once")          \
     P(uint, weights, 0, 0, 1, "{balance|power} heuristic that weighs the strategies of a path")
 PARAMS(MltParams, MLT_PARAMS)
