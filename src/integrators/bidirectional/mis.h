@@ -6,7 +6,7 @@
 // a path keeps two sums over the strategies that have fewer vertices from its side:
 //     a   the strategy that ends one vertex earlier, over the density of sampling the last vertex from the next one,
 //     d   all others, over that density, and over the density of sampling the last but one vertex from the last.
-// The two densities are known when the path goes on, or is connected. `a` is Georgiev's d_VCM, `d` his d_VC; his d_VM is d over the
+// The two densities are known when the path goes on, or is connected. The report has a third sum for merging; it is d over the
 // term of `eta`, the number of light paths times the area within which vertices are merged.
 //
 // Densities are of positions, per area. They are made of the geometric cosines, because positions are on the true surface,
