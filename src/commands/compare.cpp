@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kSchema = "lampyris.compare/1";
+constexpr const char* kCompareSchema = "lampyris.compare/1";
 
 struct CompareOptions {
     std::string image, reference, error_image;
@@ -56,7 +56,7 @@ void print_table(const CompareOptions& options, const Comparison& comparison) {
 void print_json(const CompareOptions& options, const Comparison& comparison) {
     const Metrics& metrics = comparison.metrics;
     Json json;
-    json["schema"] = kSchema;
+    json["schema"] = kCompareSchema;
     json["image"] = options.image;
     json["reference"] = options.reference;
     json["resolution"] = {comparison.width, comparison.height};

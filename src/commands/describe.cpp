@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kSchema = "lampyris.describe/1";
+constexpr const char* kDescribeSchema = "lampyris.describe/1";
 
 struct DescribeOptions {
     std::string scene;
@@ -111,7 +111,7 @@ void print_json(const LoadedScene& loaded) {
     const Scene& scene = loaded.scene;
     const Counts counts = count(scene);
     Json json;
-    json["schema"] = kSchema;
+    json["schema"] = kDescribeSchema;
     json["scene"] = scene.name;
     json["scene_hash"] = fmt::format("{:016x}", scene.hash);
     json["resolution"] = {scene.width(), scene.height()};

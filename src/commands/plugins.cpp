@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kSchema = "lampyris.plugins/1";
+constexpr const char* kPluginsSchema = "lampyris.plugins/1";
 
 struct PluginsOptions {
     std::string kind, name;
@@ -167,7 +167,7 @@ int plugins(const PluginsOptions& options) {
     const std::vector<const RegistryBase*> kinds = wanted_kinds(options);
     if (options.json) {
         Json json;
-        json["schema"] = kSchema;
+        json["schema"] = kPluginsSchema;
         json["kinds"] = Json::array();
         for (const RegistryBase* registry : kinds) json["kinds"].push_back(describe(*registry, options.name));
         fmt::print("{}\n", json.dump(2));
