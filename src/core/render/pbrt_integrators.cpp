@@ -18,7 +18,7 @@ constexpr PbrtParameter kRegularize{"regularize", kBool, "false", "", "path regu
 constexpr std::string_view kBothAreSampled = "lights and directions are both sampled";
 constexpr std::string_view kNoFunction = "no function is sampled";
 constexpr std::string_view kNoStrategies =
-    "one strategy alone is shown by --set integrator.s and integrator.t, without weights by integrator.weights=none";
+    "--set integrator.strategies=on keeps an image of each strategy, with and without weights";
 
 constexpr PbrtParameter kDepthAlone[] = {kMaxDepth};
 constexpr PbrtParameter kOfPath[] = {kMaxDepth, kLightSampler, kRegularize};

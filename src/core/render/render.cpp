@@ -224,6 +224,8 @@ RenderOutcome Rendering::State::run(uint32_t seed) {
     outcome.record.convergence = std::move(convergence);
     outcome.record.total_s = setup_s + seconds_since(run_start);
     outcome.image = film.image();
+    for (const ImageLayer& layer : session.layers)
+        outcome.image.add_channels({layer.name + ".R", layer.name + ".G", layer.name + ".B"}, layer.rgb);
     outcome.image.metadata = image_metadata(outcome.record);
     outcome.pixels = film.take_pixels();
     return outcome;

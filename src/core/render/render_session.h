@@ -52,6 +52,12 @@ struct PhotonStatistics {
     std::vector<std::pair<std::string, std::string>> map_parameters;
 };
 
+// A further image of the same pixels: [height][width][3], linear Rec. 709.
+struct ImageLayer {
+    std::string name;
+    std::vector<float> rgb;
+};
+
 class RenderSession {
  public:
     RenderSession(Device& device, const Scene& scene, DeviceSceneHandle device_scene, Film& film, BudgetLimits limits);
@@ -66,6 +72,7 @@ class RenderSession {
     uint32_t eye_samples = 1;  // per pixel, for integrators that fix them
     std::string photon_map;    // NAME[:key=value,...]; for integrators that use one
     PhotonStatistics photons;
+    std::vector<ImageLayer> layers;  // become channels NAME.R, NAME.G, NAME.B of the image
     ErrorRate error_rate = ErrorRate::of_samples();  // the integrator's convergence rate in theory
     std::string unseen_error;  // an error that the variance between passes cannot show; makes the estimate unstable
 

@@ -1,6 +1,9 @@
+#include "core/base/error.h"
 #include "core/render/integrator.h"
 #include "integrators/bdpt/bdpt_params.h"
 #include "integrators/bidirectional/bidirectional.h"
+
+#include <fmt/format.h>
 
 namespace lampyris {
 namespace {
@@ -10,14 +13,20 @@ class Bdpt : public Integrator {
     BdptParams params;
 
     void render(RenderSession& session) override {
-        render_bidirectional(session, {.name = "bdpt",
-                                       .maxdepth = params.maxdepth,
-                                       .rrdepth = params.rrdepth,
-                                       .lightpaths = params.lightpaths,
-                                       .connections = params.connections,
-                                       .weights = params.weights,
-                                       .only_light = params.s,
-                                       .only_camera = params.t});
+        constexpr int kDeepest = 16;  // 170 strategies
+        if (params.strategies != 0 && params.maxdepth > kDeepest)
+            throw InputError(fmt::format(
+                "error: strategies=on keeps two images of each strategy: choose a maxdepth of at most {}", kDeepest));
+        const BidirectionalOptions options{.name = "bdpt",
+                                           .maxdepth = params.maxdepth,
+                                           .rrdepth = params.rrdepth,
+                                           .lightpaths = params.lightpaths,
+                                           .connections = params.connections,
+                                           .weights = params.weights,
+                                           .only_light = params.s,
+                                           .only_camera = params.t};
+        render_bidirectional(session, options);
+        if (params.strategies != 0) render_strategies(session, options, params.maxdepth);
     }
 };
 

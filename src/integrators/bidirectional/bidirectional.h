@@ -25,4 +25,8 @@ struct BidirectionalOptions {
 // Renders until the session's budget is spent. Throws InputError, MachineError.
 void render_bidirectional(RenderSession& session, const BidirectionalOptions& options);
 
+// Renders the session's passes again by each strategy alone, for paths with up to `depth` scattering vertices, and keeps the
+// images as layers of the session: strategy.s1t3 as it is weighed, alone.s1t3 without weights.
+void render_strategies(RenderSession& session, const BidirectionalOptions& options, int depth);
+
 }  // namespace lampyris
