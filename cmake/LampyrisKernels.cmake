@@ -59,7 +59,7 @@ function(lampyris_add_kernels target)
   file(CONFIGURE OUTPUT ${out}/texts.cpp CONTENT "@content@" @ONLY)
   set_source_files_properties(${out}/texts.cpp PROPERTIES OBJECT_DEPENDS "${files}")
   target_sources(${target} PRIVATE ${out}/texts.cpp)
-  # Each unit includes the kernel headers again, inside its own struct. Other sources may form units (UNITY_GROUP).
+  # Each unit includes the kernel headers again, inside its own struct. Other sources may form units.
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 
   foreach(file ${arg_KERNELS})
