@@ -85,24 +85,28 @@ FN float filter_value(uint kind, uint table, uint count, float radius, float off
 // One coordinate of the pixel that a splat at `place` goes to, chosen with a probability proportional to |filter|: the same
 // noise as filter importance sampling has, and one pixel to write to. `weight` is multiplied by the filter over the probability.
 FN int splat_coordinate(uint kind, uint table, uint count, float radius, float place, float u, INOUT(float) weight) {
-    int first = int(ceil(place - radius - 0.5f));
+    int i = int(ceil(place - radius - 0.5f));
     int last = int(floor(place + radius - 0.5f));
-    float sum = 0.0f;
-    int i = first;
-    for (; i <= last; ++i) sum += abs(filter_value(kind, table, count, radius, place - (float(i) + 0.5f)));
-    if (i != last + 1) REPORT_UNFINISHED();
-    float rest = u * sum;
-    int chosen = first;
+    int chosen = i;
     float value = 0.0f;
-    int j = first;
-    for (; j <= last; ++j) {
-        float h = filter_value(kind, table, count, radius, place - (float(j) + 0.5f));
-        if (h == 0.0f) continue;
-        chosen = j;
-        value = h;
-        rest -= abs(h);
-        if (rest < 0.0f) break;
+    float sum = 0.0f;
+    float rest = u;  // uniform, whatever was chosen so far
+    for (; i <= last; ++i) {
+        float h = filter_value(kind, table, count, radius, place - (float(i) + 0.5f));
+        float size = abs(h);
+        if (size == 0.0f) continue;
+        float before = sum;
+        sum += size;
+        float point = rest * sum;
+        if (point < size) {
+            chosen = i;
+            value = h;
+            rest = point / size;
+        } else {
+            rest = min((point - size) / before, ONE_MINUS_EPSILON);
+        }
     }
+    if (i != last + 1) REPORT_UNFINISHED();
     weight = value < 0.0f ? -weight * sum : weight * sum;
     return chosen;
 }

@@ -24,6 +24,8 @@ CONST uint HEURISTIC_POWER = 1u;
 
 CONST float MIS_LARGEST = 1e30f;       // finite, because its product with a density of 0 is 0
 CONST float MIS_LEAST_COSINE = 1e-6f;  // of a vertex that is seen edge-on
+// Of a sampled direction (1/sr). Estimated densities (layers) may be 0.
+CONST float MIS_LEAST_DENSITY = 1e-12f;
 
 // A quotient of densities, as the heuristic counts it.
 FN float mis_term(float quotient, uint heuristic) {
@@ -50,8 +52,9 @@ FN void mis_arrive(INOUT(MisSums) m, float squared_distance, float cosine, uint 
 // there, of the direction to the previous vertex. `cosine`: geometric, of the new direction. `eta`: of merging (0: none).
 FN void mis_scatter(INOUT(MisSums) m, float cosine, float forward, float reverse, float eta, uint heuristic) {
     float earlier = mis_term(eta, heuristic) + m.a + mis_term(reverse, heuristic) * m.d;
-    m.d = mis_term(mis_cosine(cosine) / forward, heuristic) * earlier;
-    m.a = 1.0f / mis_term(forward, heuristic);
+    float density = max(forward, MIS_LEAST_DENSITY);
+    m.d = mis_term(mis_cosine(cosine) / density, heuristic) * min(earlier, MIS_LARGEST);
+    m.a = 1.0f / mis_term(density, heuristic);
     mis_bound(m);
 }
 
