@@ -20,23 +20,31 @@ constexpr uint32_t kLeastSeeds = 16384;
 // Mutations of a chain in one run of the kernel: few, so that no run is long.
 constexpr uint32_t kIterations = 32;
 
-// The seeds at which chains start, in proportion to their luminance: `count` equally spaced points, moved by u in [0, 1), of the
-// luminances laid end to end (systematic resampling).
-std::vector<uint32_t> resample(const std::vector<float>& luminances, double sum, uint32_t count, double u) {
+// The first seed of each number of scattering vertices, and the number of all. Paths with n vertices more than the least get a share of
+// 1 / (n + 1), since most of the light is in short ones.
+std::vector<uint32_t> share_seeds(uint32_t seeds, uint32_t depths) {
+    double whole = 0.0;
+    for (uint32_t n = 0; n < depths; ++n) whole += 1.0 / (n + 1);
+    std::vector<uint32_t> starts{0};
+    for (uint32_t n = 0; n < depths; ++n)
+        starts.push_back(starts.back() + std::max(1u, uint32_t(seeds / (whole * (n + 1)))));
+    return starts;
+}
+
+// The seeds at which chains start, in proportion to their weights: `count` equally spaced points, moved by u in [0, 1), of the
+// weights laid end to end (systematic resampling).
+std::vector<uint32_t> resample(const std::vector<double>& weights, double sum, uint32_t count, double u) {
     std::vector<uint32_t> chosen(count);
     double below = 0.0;
-    uint32_t seed = 0;
+    uint32_t seed = 0, last = 0;
+    for (uint32_t i = 0; i < weights.size(); ++i)
+        if (weights[i] > 0.0) last = i;
     for (uint32_t i = 0; i < count; ++i) {
         const double point = (i + u) / count * sum;
-        while (seed + 1 < luminances.size() && (luminances[seed] <= 0.0f || below + double(luminances[seed]) <= point))
-            below += double(luminances[seed++]);
+        // Rounding may leave the last points behind the last seed that is not black.
+        while (seed < last && (weights[seed] <= 0.0 || below + weights[seed] <= point)) below += weights[seed++];
         chosen[i] = seed;
     }
-    // Rounding may leave the last points behind the last seed that is not black.
-    uint32_t last = 0;
-    for (uint32_t i = 0; i < luminances.size(); ++i)
-        if (luminances[i] > 0.0f) last = i;
-    for (uint32_t& seed_of_chain : chosen) seed_of_chain = std::min(seed_of_chain, last);
     return chosen;
 }
 
@@ -67,7 +75,8 @@ class MltRender {
         mlt_.chains = std::min(uint32_t(params.chains), wanted);
         iterations_ = (wanted + mlt_.chains - 1) / mlt_.chains;
         seeds_ = params.bootstrapsamples >= 0 ? uint32_t(params.bootstrapsamples) : std::max(wanted / 4, kLeastSeeds);
-        seeds_ = std::max(seeds_ / std::max(mlt_.depths, 1u), 1u) * mlt_.depths;  // the same number for each depth
+        starts_ = share_seeds(seeds_, mlt_.depths);
+        seeds_ = starts_.back();
         mlt_.sigma = params.sigma;
         mlt_.large_step = params.largestepprobability;
         mlt_.quantum = 0x1p-24f;
@@ -84,12 +93,14 @@ class MltRender {
         const PathParams direct{std::min(params.maxdepth, kernel::MLT_LEAST_DEPTH - 1), 1};
         params_ = argument_buffer(device_, direct, "parameters of direct light");
 
-        const uint32_t dimensions = kernel::MLT_VERTICES + kernel::MLT_VERTEX_NUMBERS * uint32_t(params.maxdepth + 1);
+        const uint32_t dimensions = kernel::MLT_VERTICES + kernel::MLT_VERTEX_NUMBERS * uint32_t(params.maxdepth);
         splats_ = device_.create_buffer(splat_bytes(pixels_, "mlt"), "splats");
         states_ = device_.create_buffer(size_t(mlt_.chains) * sizeof(kernel::MltState), "chains");
         numbers_ = device_.create_buffer(size_t(mlt_.chains) * dimensions * 4, "numbers of chains");
         luminances_ = device_.create_buffer(std::max<size_t>(seeds_, 1) * 4, "luminances of seeds");
         chosen_ = device_.create_buffer(size_t(mlt_.chains) * 4, "seeds of chains");
+        depth_starts_ = device_.create_buffer(starts_.size() * 4, "first seeds of path lengths");
+        depth_starts_->upload(starts_.data(), starts_.size() * 4);
         run_chains(0);  // compiles, if need be, before the clock starts
         run_finish(0);
     }
@@ -120,11 +131,15 @@ class MltRender {
         run_chains(seeds_);
         std::vector<float> luminances(seeds_);
         luminances_->download(luminances.data(), luminances.size() * 4);
+        // The sum of weights is the picture's brightness: the mean luminance of paths with each number of vertices, summed.
+        std::vector<double> weights(seeds_);
         double sum = 0.0;
-        for (const float l : luminances) sum += double(l);
+        for (uint32_t n = 0; n < mlt_.depths; ++n)
+            for (uint32_t i = starts_[n]; i < starts_[n + 1]; ++i)
+                sum += weights[i] = double(luminances[i]) / (starts_[n + 1] - starts_[n]);
         if (sum > 0.0) {
             const double u = double(hash_of(mlt_.seed)) * 0x1p-32;
-            const std::vector<uint32_t> chosen = resample(luminances, sum, mlt_.chains, u);
+            const std::vector<uint32_t> chosen = resample(weights, sum, mlt_.chains, u);
             chosen_->upload(chosen.data(), chosen.size() * 4);
             set_mode(kernel::MLT_START, 0, 1);
             run_chains(mlt_.chains);
@@ -133,9 +148,7 @@ class MltRender {
                 run_chains(mlt_.chains);
             }
         }
-        // The mean luminance of seeds with a given number of scattering vertices, summed over these numbers.
-        const double brightness = sum / double(seeds_) * double(mlt_.depths);
-        mlt_.brightness = float(brightness / (double(mlt_.chains) * double(iterations_)));
+        mlt_.brightness = float(sum / (double(mlt_.chains) * double(iterations_)));
         std::array<uint32_t, kernel::MLT_COUNTERS> counters{};
         counters_->download(&counters, sizeof counters);
         session_.photons.rays += counters[kernel::MLT_RAYS];
@@ -145,7 +158,7 @@ class MltRender {
         session_.add_count("large_steps_accepted", counters[kernel::MLT_LARGE_ACCEPTED]);
         session_.add_count("small_steps", sum > 0.0 ? mutations - large : 0.0);
         session_.add_count("small_steps_accepted", counters[kernel::MLT_SMALL_ACCEPTED]);
-        brightness_.add(brightness / (double(session_.scene.width()) * double(session_.scene.height())));
+        brightness_.add(sum / (double(session_.scene.width()) * double(session_.scene.height())));
         session_.set_count("brightness", brightness_.mean);
         session_.set_count("brightness_error", brightness_.error());
     }
@@ -166,15 +179,16 @@ class MltRender {
     }
 
     void run_chains(uint32_t count) {
-        const std::array<NamedBuffer, 9> buffers{{{"window", window_},
-                                                  {"passes", passes_},
-                                                  {"mlt", mlt_pass_},
-                                                  {"splats", splats_},
-                                                  {"counters", counters_},
-                                                  {"states", states_},
-                                                  {"numbers", numbers_},
-                                                  {"luminances", luminances_},
-                                                  {"chosen", chosen_}}};
+        const std::array<NamedBuffer, 10> buffers{{{"window", window_},
+                                                   {"passes", passes_},
+                                                   {"mlt", mlt_pass_},
+                                                   {"splats", splats_},
+                                                   {"counters", counters_},
+                                                   {"states", states_},
+                                                   {"numbers", numbers_},
+                                                   {"luminances", luminances_},
+                                                   {"chosen", chosen_},
+                                                   {"depth_starts", depth_starts_}}};
         device_.run(*chains_, session_.device_scene.get(), buffers, 0, count);
     }
 
@@ -193,13 +207,14 @@ class MltRender {
     kernel::BidirectionalPass pass_{};
     kernel::MltPass mlt_{};
     uint32_t iterations_ = 0, seeds_ = 0;
-    PassMean brightness_;  // mean luminance of the picture, of paths with MLT_LEAST_DEPTH vertices or more
+    std::vector<uint32_t> starts_;  // first seed of each number of scattering vertices, and the number of all
+    PassMean brightness_;           // mean luminance of the picture, of paths with MLT_LEAST_DEPTH vertices or more
     KernelHandle chains_, finish_;
     BufferHandle window_ = device_.create_buffer(sizeof(kernel::FilmWindow), "film window");
     BufferHandle passes_ = device_.create_buffer(sizeof(kernel::BidirectionalPass), "pass");
     BufferHandle mlt_pass_ = device_.create_buffer(sizeof(kernel::MltPass), "pass of chains");
     BufferHandle counters_ = device_.create_buffer(kernel::MLT_COUNTERS * 4, "counters");
-    BufferHandle params_, splats_, states_, numbers_, luminances_, chosen_;
+    BufferHandle params_, splats_, states_, numbers_, luminances_, chosen_, depth_starts_;
 };
 
 class Mlt : public Integrator {

@@ -10,9 +10,10 @@ BUFFER_RO(1, BidirectionalPass, passes)
 BUFFER_RO(2, MltPass, mlt)
 BUFFER_RW(3, uint, splats)
 BUFFER_RW(4, uint, counters)
-BUFFER_RW(5, MltState, states)   // of chains
-BUFFER_RW(7, float, luminances)  // of seeds
-BUFFER_RO(8, uint, chosen)       // of each chain: its seed
+BUFFER_RW(5, MltState, states)    // of chains
+BUFFER_RW(7, float, luminances)   // of seeds
+BUFFER_RO(8, uint, chosen)        // of each chain: its seed
+BUFFER_RO(9, uint, depth_starts)  // the first seed of each number of scattering vertices
 
 #include "core/kernel/splat.h"
 #include "integrators/mlt/mlt_path.h"
@@ -36,8 +37,19 @@ FN void mlt_splat_state(IN(MltState) state, uint key) {
     mlt_splat(state.color, state.raster, state.kind >> 16u != 0u, state.weight, key);
 }
 
-// The number of scattering vertices of a seed's path: seeds are shared out evenly.
-FN uint seed_depth(uint seed) { return uint(MLT_LEAST_DEPTH) + seed % mlt[0].depths; }
+// The number of scattering vertices of a seed's path.
+FN uint seed_depth(uint seed) {
+    uint low = 0u;
+    uint high = mlt[0].depths;
+    while (low + 1u < high) {
+        uint middle = (low + high) / 2u;
+        if (depth_starts[middle] <= seed)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low + uint(MLT_LEAST_DEPTH);
+}
 
 KERNEL(mlt_chains) {
     MltPass pass = mlt[0];
@@ -50,7 +62,7 @@ KERNEL(mlt_chains) {
     state.weight = 0.0f;
     state.kind = seed_depth(seed);
     if (mutates) state = states[index];
-    uint dimensions = mlt_dimensions(pass.depths);
+    uint dimensions = mlt_dimensions(state.kind & 0xffffu);
     uint large_steps = 0u;
     uint large_accepted = 0u;
     uint small_accepted = 0u;

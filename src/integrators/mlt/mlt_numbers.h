@@ -13,7 +13,8 @@ PRIVATE(uint, primary_key, 1)    // of the proposal
 PRIVATE(uint, primary_large, 1)  // 1: the proposal is independent of the current path
 PRIVATE(uint, primary_chain, 1)
 
-FN uint mlt_dimensions(uint depths) { return MLT_VERTICES + MLT_VERTEX_NUMBERS * (depths + uint(MLT_LEAST_DEPTH)); }
+// Numbers of a path with that many scattering vertices.
+FN uint mlt_dimensions(uint depth) { return MLT_VERTICES + MLT_VERTEX_NUMBERS * depth; }
 
 FN uint primary_bits(uint dimension) {
     uvec3 bits = pcg3d(uvec3(primary_key[0], dimension, 0x2c1b3c6du));
