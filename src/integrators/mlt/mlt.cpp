@@ -4,6 +4,8 @@
 #include "integrators/mlt/mlt_params.h"
 #include "integrators/path/path_params.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,6 +19,8 @@ constexpr const char* kChains = "integrators/mlt/mlt_chains.kernel.h";
 constexpr const char* kPixels = "integrators/mlt/mlt_pixels.kernel.h";
 
 constexpr uint32_t kLeastSeeds = 16384;
+// Above this standard error of the brightness of paths, relative to it, pixels may be wrong in ways that their spread does not tell.
+constexpr double kUncertainBrightness = 0.05;
 // Mutations of a chain in one run of the kernel: few, so that no run is long.
 constexpr uint32_t kIterations = 32;
 
@@ -60,6 +64,9 @@ struct PassMean {
     double error() const { return count > 1.0 ? std::sqrt(squares / (count - 1.0) / count) : 0.0; }
 };
 
+// Chains that are long enough to make use of what they find, and enough for a device with many processors.
+uint32_t default_chains(uint32_t mutations) { return std::clamp(mutations / 100, 1024u, 65536u); }
+
 class MltRender {
  public:
     MltRender(RenderSession& session, const MltParams& params)
@@ -72,7 +79,7 @@ class MltRender {
         constexpr double kMost = std::numeric_limits<uint32_t>::max() / 2;
         const auto wanted = uint32_t(std::clamp(std::ceil(full * double(params.mutationsperpixel)), 1.0, kMost));
         mlt_.depths = uint32_t(std::max(params.maxdepth - kernel::MLT_LEAST_DEPTH + 1, 0));
-        mlt_.chains = std::min(uint32_t(params.chains), wanted);
+        mlt_.chains = std::min(params.chains > 0 ? uint32_t(params.chains) : default_chains(wanted), wanted);
         iterations_ = (wanted + mlt_.chains - 1) / mlt_.chains;
         seeds_ = params.bootstrapsamples >= 0 ? uint32_t(params.bootstrapsamples) : std::max(wanted / 4, kLeastSeeds);
         starts_ = share_seeds(seeds_, mlt_.depths);
@@ -161,6 +168,14 @@ class MltRender {
         brightness_.add(sum / (double(session_.scene.width()) * double(session_.scene.height())));
         session_.set_count("brightness", brightness_.mean);
         session_.set_count("brightness_error", brightness_.error());
+        const double uncertain = brightness_.mean > 0.0 ? brightness_.error() / brightness_.mean : 0.0;
+        session_.unseen_error =
+            uncertain > kUncertainBrightness
+                ? fmt::format(
+                      "the brightness of longer paths differs between passes, by {:.0f} % of its mean: chains have "
+                      "not found all that is bright",
+                      100.0 * uncertain)
+                : std::string();
     }
 
     static uint32_t hash_of(uint32_t x) {
