@@ -2,15 +2,15 @@
 
 from pathlib import Path
 
+from lab import equal_time
 from lab.figures import downloads, figure, tikz_grid
 from lab.images import encode, exposure_of
+from lab.reports import reference_text, show_picture, write_csv
 from lab.runs import Run
 from lab.sections import Download, Section
 from lab.store import Store
 from lab.target import Plan
 from matplotlib.patches import Rectangle
-from parallel_ppm_2010 import equal_time
-from parallel_ppm_2010.common import reference_text, show_picture, write_csv
 from parallel_ppm_2010.robustness import better_verdict
 
 # What the paper shows beside path tracing and progressive photon mapping.

@@ -2,14 +2,15 @@
 
 from pathlib import Path
 
+from lab import equal_time
+from lab.equal_time import Outcome
 from lab.figures import downloads, draw, figure, palette
+from lab.reports import judge, reference_text, write_csv
 from lab.runs import Run
 from lab.sections import Section, Verdict
 from lab.store import Store
 from lab.target import Plan
-from parallel_ppm_2010 import equal_time
-from parallel_ppm_2010.common import SOURCE, judge, reference_text, write_csv
-from parallel_ppm_2010.equal_time import Outcome
+from parallel_ppm_2010.common import SOURCE
 
 WORDS = ("relmse_trimmed", "flip")
 ABOUT = 2.0  # times the list's error that one photon a bucket may have in equal time

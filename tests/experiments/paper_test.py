@@ -9,11 +9,12 @@ import pytest
 from lab import noise
 from lab.catalogue import EXPERIMENTS, Catalogue
 from lab.figures import tikz_grid
+from lab.reports import judge, what_failed
 from lab.runs import Machine
 from lab.store import Store
 from lab.target import all_targets
 from parallel_ppm_2010 import additional_noise, kernel_lines, opening, random_points, scenes, time_vs_cpu, time_vs_tree
-from parallel_ppm_2010.common import is_software, judge, timing_of, what_failed, with_parameters
+from parallel_ppm_2010.common import is_software, timing_of, with_parameters
 from parallel_ppm_2010.robustness import better_verdict, list_verdict
 
 GPU, SOFTWARE = "GeForce GTX 480", "llvmpipe (LLVM 19.1.7, 256 bits)"
