@@ -31,7 +31,7 @@ def draw_figure(plan: Plan, store: Store, folder: Path, found: list[equal_time.O
     pictures = equal_time.pictures_of(store, folder, plan.scenes[0], found)
     exposure = exposure_of(pictures[-1][1])
     count = 1 + len(plan["crops"])
-    with figure(folder, "opening", (1.6 * len(pictures), 1.5 * count + 0.4), count, len(pictures)) as (_, axes):
+    with figure(folder, "opening", (1.6 * len(pictures), 1.25 * count + 0.4), count, len(pictures)) as (_, axes):
         for column, (title, image) in zip(axes.T, pictures, strict=True):
             show_picture(column[0], image, title, exposure)
             for i, (one, share) in enumerate(zip(column[1:], plan["crops"], strict=True)):
