@@ -8,20 +8,13 @@ import numpy as np
 from lab import noise
 from lab.figures import downloads, draw, figure
 from lab.images import Gallery, exposure_of, luminance, read_exr
+from lab.reports import judge, reference_text, show_picture, what_failed, write_csv
 from lab.runs import Run
 from lab.sections import Axis, Column, Plot, Section, Series, Table, Verdict, Viewer
 from lab.store import Store
 from lab.target import Plan
 from matplotlib.ticker import NullFormatter
-from parallel_ppm_2010.common import (
-    SOURCE,
-    judge,
-    reference_text,
-    show_picture,
-    what_failed,
-    with_parameters,
-    write_csv,
-)
+from parallel_ppm_2010.common import SOURCE, with_parameters
 from parallel_ppm_2010.kernel_lines import kernel_rows
 
 MODEL_HOLDS = 0.2  # share by which the measured ratio may differ from the predicted one

@@ -1,15 +1,12 @@
-"""What the targets of this experiment share: parameters of methods, repeated timings, verdicts, data and pictures."""
+"""What the targets of this experiment share: parameters of methods, and repeated timings."""
 
-import csv
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 
 import numpy as np
 from lab.catalogue import Scene
-from lab.images import encode, exposure_of, reference_error
+from lab.reports import what_failed
 from lab.runs import Run
-from lab.sections import Download
 from lab.store import Store
 from lab.target import Plan
 
@@ -30,22 +27,9 @@ def with_parameters(words: str, **parameters) -> str:
     return words
 
 
-def judge(passed: Iterable[bool]) -> str:
-    """What a verdict says when these criteria were looked at: all hold, some, none, or there was nothing to look at."""
-    passed = list(passed)
-    if not passed:
-        return "not tested"
-    return "yes" if all(passed) else "partly" if any(passed) else "no"
-
-
 def is_software(device: str) -> bool:
     """Whether a Vulkan device is the processor itself, by its name."""
     return any(word in device.lower() for word in ("llvmpipe", "lavapipe", "swiftshader"))
-
-
-def what_failed(record: dict) -> str:
-    """The last line of why a run could not be made, or an empty string."""
-    return (record.get("failed", "").strip().splitlines() or [""])[-1]
 
 
 @dataclass
@@ -107,35 +91,6 @@ def range_of(values: Iterable[float | None]) -> str:
         return "not known"
     low, high = f"{min(known):.3g}", f"{max(known):.3g}"
     return f"{low} times" if low == high else f"{low} to {high} times"
-
-
-def write_csv(path: Path, rows: list[dict]) -> Download:
-    """The data of a figure; the columns are the keys of the rows, lists of run keys joined by spaces."""
-    columns = list(dict.fromkeys(key for row in rows for key in row))
-    with path.open("w", newline="") as file:
-        writer = csv.DictWriter(file, columns)
-        writer.writeheader()
-        for row in rows:
-            writer.writerow({key: " ".join(value) if isinstance(value, list) else value for key, value in row.items()})
-    return Download(path.name, f"{path.stem.replace('_', ' ')} (CSV)")
-
-
-def reference_text(scene: Scene, store: Store) -> str:
-    """By whom a scene's reference is, and how wrong it is itself."""
-    reference = scene.reference
-    told = reference_error(reference, store)
-    error = "its own relMSE is not known"
-    if told["relmse"] is not None:
-        error = f"its own relMSE is {told['relmse']:.2g} ({told['how']})"
-    dependent = "" if reference.independent else "; it is not independent of the methods that map photons"
-    return f"The reference of “{scene.title}” is by {reference.by}; {error}{dependent}."
-
-
-def show_picture(axes, image: np.ndarray, title: str, exposure: float | None = None) -> None:
-    """An image of scene-linear light on matplotlib's axes, without a frame."""
-    axes.imshow(encode(image, exposure_of(image) if exposure is None else exposure), interpolation="nearest")
-    axes.set_title(title, fontsize=7)
-    axes.set_axis_off()
 
 
 def structure_name(method_name: str) -> str:

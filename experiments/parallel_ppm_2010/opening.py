@@ -2,36 +2,23 @@
 
 from pathlib import Path
 
+from lab import equal_time
 from lab.figures import downloads, figure, tikz_grid
 from lab.images import encode, exposure_of
+from lab.reports import reference_text, show_picture, write_csv
 from lab.runs import Run
 from lab.sections import Download, Section
 from lab.store import Store
 from lab.target import Plan
 from matplotlib.patches import Rectangle
-from parallel_ppm_2010 import equal_time
-from parallel_ppm_2010.common import reference_text, show_picture, write_csv
 from parallel_ppm_2010.robustness import better_verdict
 
-# What the paper shows beside path tracing and progressive photon mapping.
-OTHERS = {"bdpt": "bidirectional path tracing", "mlt": "Metropolis light transport"}
 FRAMES = ["#D55E00", "#56B4E9", "#009E73"]
 
 
 def runs(plan: Plan) -> list[Run]:
     """Every method on the scene."""
     return [case.run(plan) for case in equal_time.cases(plan)]
-
-
-def absent(integrators: dict) -> str:
-    """Which of the paper's methods are not compared, in a sentence; empty if all are."""
-    missing = [f"{title} (`{name}`)" for name, title in OTHERS.items() if name not in integrators]
-    if not missing:
-        return ""
-    return (
-        f"The paper's figure has {' and '.join(missing)}, too, which are not among the integrators here. Each joins "
-        "by a line in experiments/methods.toml, as every integrator does."
-    )
 
 
 def crop_pixels(share: list[float], height: int, width: int) -> tuple[int, int, int, int]:
@@ -44,7 +31,7 @@ def draw_figure(plan: Plan, store: Store, folder: Path, found: list[equal_time.O
     pictures = equal_time.pictures_of(store, folder, plan.scenes[0], found)
     exposure = exposure_of(pictures[-1][1])
     count = 1 + len(plan["crops"])
-    with figure(folder, "opening", (1.6 * len(pictures), 1.5 * count + 0.4), count, len(pictures)) as (_, axes):
+    with figure(folder, "opening", (1.6 * len(pictures), 1.25 * count + 0.4), count, len(pictures)) as (_, axes):
         for column, (title, image) in zip(axes.T, pictures, strict=True):
             show_picture(column[0], image, title, exposure)
             for i, (one, share) in enumerate(zip(column[1:], plan["crops"], strict=True)):
@@ -79,14 +66,15 @@ def report(plan: Plan, store: Store, folder: Path) -> Section:
     claim = "Where all light takes specular-diffuse-specular paths, only progressive photon mapping shows it"
     text = [
         f"{plan['time_s']} s of rendering for each method, set-up not counted.",
-        absent(plan.catalogue.integrators),
+        "The paper's figure has path tracing, bidirectional path tracing, Metropolis light transport and progressive "
+        "photon mapping; the other methods are here besides.",
         *(reference_text(scene, store) for scene in plan.scenes if found),
     ]
     return Section(
         plan.name,
         plan["title"],
         plan.experiment,
-        [one for one in text if one],
+        text,
         [better_verdict(found, plan["progressive"], plan["against"], claim)],
         equal_time.plots_of(plan, found),
         equal_time.viewers_of(plan, store, folder, found),

@@ -6,11 +6,12 @@ from pathlib import Path
 import numpy as np
 from lab.catalogue import Method
 from lab.figures import downloads, draw, figure, palette
+from lab.reports import judge, what_failed, write_csv
 from lab.runs import Run
 from lab.sections import Axis, Column, Plot, Section, Series, Table, Verdict
 from lab.store import Store
 from lab.target import Plan
-from parallel_ppm_2010.common import SOURCE, is_software, judge, structure_name, what_failed, write_csv
+from parallel_ppm_2010.common import SOURCE, is_software, structure_name
 
 LINEAR = (0.9, 1.1)  # exponents of the time to build that count as linear
 FIT_FROM = 1e4  # smaller builds are mostly the cost of starting one

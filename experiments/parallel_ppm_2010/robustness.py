@@ -1,15 +1,16 @@
-"""Path tracing, PPM and stochastic PPM in equal time, where light takes specular-diffuse-specular paths."""
+"""Every method and stochastic PPM in equal time, where light takes specular-diffuse-specular paths."""
 
 from pathlib import Path
 
+from lab import equal_time
+from lab.equal_time import Outcome
 from lab.figures import downloads, draw, figure, palette
+from lab.reports import judge, reference_text, write_csv
 from lab.runs import Run
 from lab.sections import Section, Verdict
 from lab.store import Store
 from lab.target import Plan
-from parallel_ppm_2010 import equal_time
-from parallel_ppm_2010.common import SOURCE, judge, reference_text, write_csv
-from parallel_ppm_2010.equal_time import Outcome
+from parallel_ppm_2010.common import SOURCE
 
 WORDS = ("relmse_trimmed", "flip")
 ABOUT = 2.0  # times the list's error that one photon a bucket may have in equal time
@@ -20,21 +21,28 @@ def runs(plan: Plan) -> list[Run]:
     return [case.run(plan) for case in equal_time.cases(plan)]
 
 
-def better_verdict(found: list[Outcome], methods: list[str], against: str, claim: str) -> Verdict:
-    """Are all of `methods` nearer the reference than `against`, by both measures, on every scene?"""
+def better_verdict(found: list[Outcome], methods: list[str], against: list[str], claim: str) -> Verdict:
+    """Are all of `methods` nearer the reference than each of `against`, by both measures, on every scene?"""
     told, passed, why, keys = [], [], [], {}
     for scene in dict.fromkeys(one.case.scene.name for one in found):
         of_scene = [one for one in found if one.case.scene.name == scene]
         title = of_scene[0].case.scene.title
         for word in WORDS:
-            pairs = equal_time.below(of_scene, methods, against, word)
-            passed += [share < 1.0 for _, _, share in pairs]
-            if pairs:
-                shares = [share for _, _, share in pairs]
-                told.append(f"{title}, {word.replace('relmse_trimmed', 'trimmed relMSE')}: {spoken(shares)}")
-            why += [f"{mine.case.method.label} has more {word} on {title}" for mine, _, share in pairs if share >= 1.0]
-            keys.update((one.key, None) for pair in pairs for one in pair[:2])
-    measured = f"Error over that of {against}: {'; '.join(told)}" if told else "not measured"
+            of_word = []
+            for other in against:
+                pairs = equal_time.below(of_scene, methods, other, word)
+                passed += [share < 1.0 for _, _, share in pairs]
+                if pairs:
+                    of_word.append(f"{spoken([share for _, _, share in pairs])} of {other}'s")
+                why += [
+                    f"{mine.case.method.label} has more {word} on {title} than {other}"
+                    for mine, _, share in pairs
+                    if share >= 1.0
+                ]
+                keys.update((one.key, None) for pair in pairs for one in pair[:2])
+            if of_word:
+                told.append(f"{title}, {word.replace('relmse_trimmed', 'trimmed relMSE')}: {', '.join(of_word)}")
+    measured = f"Error as a share: {'; '.join(told)}" if told else "not measured"
     return Verdict(claim, measured, judge(passed), "; ".join(why), SOURCE, list(keys))
 
 

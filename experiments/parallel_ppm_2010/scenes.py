@@ -7,11 +7,12 @@ from pathlib import Path
 
 from lab.figures import downloads, figure
 from lab.images import Gallery, read_exr
+from lab.reports import show_picture, what_failed
 from lab.runs import ROOT, Run
 from lab.sections import Column, Download, Section, Table, Verdict, Viewer
 from lab.store import Store
 from lab.target import Plan
-from parallel_ppm_2010.common import SOURCE, show_picture, what_failed, with_parameters
+from parallel_ppm_2010.common import SOURCE, with_parameters
 
 NEAR = 0.05  # share by which a count may differ from the paper's
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from lab.catalogue import Method, Scene
 from lab.figures import downloads
+from lab.reports import write_csv
 from lab.runs import Run
 from lab.sections import Axis, Column, Plot, Section, Series, Table, Verdict
 from lab.store import Store
@@ -19,7 +20,6 @@ from parallel_ppm_2010.common import (
     structure_name,
     timed_run,
     timing_of,
-    write_csv,
 )
 from parallel_ppm_2010.time_vs_tree import columns_of, draw_figure
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from lab.catalogue import Method, Scene
 from lab.figures import downloads, draw, figure, palette
+from lab.reports import judge, write_csv
 from lab.runs import Run
 from lab.sections import Axis, Column, Plot, Section, Series, Table, Verdict
 from lab.store import Store
@@ -14,13 +15,11 @@ from parallel_ppm_2010.common import (
     STEPS,
     Timing,
     is_software,
-    judge,
     range_of,
     ratio,
     structure_name,
     timed_run,
     timing_of,
-    write_csv,
 )
 
 

@@ -9,11 +9,12 @@ import pytest
 from lab import noise
 from lab.catalogue import EXPERIMENTS, Catalogue
 from lab.figures import tikz_grid
+from lab.reports import judge, what_failed
 from lab.runs import Machine
 from lab.store import Store
 from lab.target import all_targets
 from parallel_ppm_2010 import additional_noise, kernel_lines, opening, random_points, scenes, time_vs_cpu, time_vs_tree
-from parallel_ppm_2010.common import is_software, judge, timing_of, what_failed, with_parameters
+from parallel_ppm_2010.common import is_software, timing_of, with_parameters
 from parallel_ppm_2010.robustness import better_verdict, list_verdict
 
 GPU, SOFTWARE = "GeForce GTX 480", "llvmpipe (LLVM 19.1.7, 256 bits)"
@@ -337,13 +338,17 @@ def test_progressive_methods_are_compared_with_path_tracing_by_both_measures():
         Outcome("pool", "sppm", relmse_trimmed=0.5, flip=0.1),
         Outcome("pool", "ppm"),  # could not be made
     ]
-    verdict = better_verdict(found, ["sppm", "ppm", "nobody"], "path", "it does")
+    verdict = better_verdict(found, ["sppm", "ppm", "nobody"], ["path"], "it does")
     assert verdict.holds == "yes" and verdict.why == ""
-    assert "a lamp inside a bulb of glass, trimmed relMSE: 0.25" in verdict.measured
+    assert "a lamp inside a bulb of glass, trimmed relMSE: 0.25 of path's" in verdict.measured
     found[3].errors["flip"] = 0.4
-    verdict = better_verdict(found, ["sppm"], "path", "it does")
+    verdict = better_verdict(found, ["sppm"], ["path"], "it does")
     assert verdict.holds == "partly" and "Pool" in verdict.why
-    assert better_verdict([], ["sppm"], "path", "it does").holds == "not tested"
+    found.append(Outcome("pool", "mlt", relmse_trimmed=0.4, flip=0.9))
+    verdict = better_verdict(found, ["sppm"], ["path", "mlt"], "it does")
+    assert "Pool, trimmed relMSE: 0.5 of path's, 1.2 of mlt's" in verdict.measured
+    assert "SPPM has more relmse_trimmed on Pool than mlt" in verdict.why
+    assert better_verdict([], ["sppm"], ["path"], "it does").holds == "not tested"
 
 
 def test_one_photon_a_bucket_is_compared_with_all():
@@ -358,9 +363,7 @@ def test_one_photon_a_bucket_is_compared_with_all():
     assert verdict.holds == "partly" and "Pool: 3.5" in verdict.measured and "Pool" in verdict.why
 
 
-def test_the_opening_says_which_methods_are_absent():
-    assert "bdpt" in opening.absent({"path": {}}) and "mlt" in opening.absent({"path": {}, "bdpt": {}})
-    assert opening.absent({"bdpt": {}, "mlt": {}}) == ""
+def test_crops_are_shares_of_the_picture():
     assert opening.crop_pixels([0.25, 0.5, 0.5, 1.0], 120, 160) == (40, 60, 80, 120)
 
 

@@ -4,14 +4,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+
 from lab.catalogue import Method, Scene
 from lab.figures import figure
 from lab.images import Gallery, exposure_of, read_exr
+from lab.reports import show_picture, what_failed
 from lab.runs import Run
 from lab.sections import Axis, Column, Image, Plot, Series, Table, Viewer
 from lab.store import Store
 from lab.target import Plan
-from parallel_ppm_2010.common import show_picture, what_failed
 
 
 @dataclass(frozen=True)
