@@ -226,6 +226,11 @@ Shape "trianglemesh" "point3 P" [ {} ] "integer indices" [ 0 2 1 0 3 2 ]
     EXPECT_LT(error, 0.01 * means[0].value()) << "the test has no power";
 }
 
+TEST(Bidirectional, UnweightedStrategiesAreShownOneByOne) {
+    EXPECT_THROW(render_text(sphere(0.5), settings_of("cpu", "bdpt:weights=none", 1, 0)), InputError);
+    EXPECT_THROW(render_text(sphere(0.5), settings_of("cpu", "bdpt:strategies=on,maxdepth=100", 1, 0)), InputError);
+}
+
 // ---- The same image --------------------------------------------------------------------------------------------------
 
 TEST(Bidirectional, SameOnEveryBackendAndThread) {

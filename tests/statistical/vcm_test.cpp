@@ -136,6 +136,18 @@ TEST(Merging, SameOnEveryBackendAndThread) {
     }
 }
 
+// Merging vanishes with the radius: what is left is bdpt, and not a quotient of zeros.
+TEST_P(Merging, TinyRadiiLeaveBdpt) {
+    RenderSettings settings = settings_of(GetParam(), "bdpt:maxdepth=5", 4, 16);
+    const Rendered bdpt = render_file(scene_path("reference/diffuse"), settings);
+    settings.integrator = "vcm:maxdepth=5,radius=1e-25";
+    const Rendered vcm = render_file(scene_path("reference/diffuse"), settings);
+    for (size_t i = 0; i < vcm.pixels.size(); ++i) {
+        EXPECT_EQ(vcm.pixels[i].left_out, 0u);
+        EXPECT_NEAR(vcm.pixels[i].sum.x, bdpt.pixels[i].sum.x, 1e-4f * bdpt.pixels[i].sum.x);
+    }
+}
+
 TEST(Merging, MapsThatDropPhotonsAreRefused) {
     RenderSettings settings = settings_of("cpu", "vcm", 1, 8);
     settings.photon_map = "uniform_grid:capacity=4,overflow=drop";

@@ -17,6 +17,11 @@ class Bdpt : public Integrator {
         if (params.strategies != 0 && params.maxdepth > kDeepest)
             throw InputError(fmt::format(
                 "error: strategies=on keeps two images of each strategy: choose a maxdepth of at most {}", kDeepest));
+        if (params.weights == kernel::WEIGHTS_NONE && (params.s < 0 || params.t < 0))
+            throw InputError(
+                "error: weights=none shows one strategy as if it were alone: choose it by s and t, its vertices from "
+                "the light "
+                "and from the camera");
         const BidirectionalOptions options{.name = "bdpt",
                                            .maxdepth = params.maxdepth,
                                            .rrdepth = params.rrdepth,

@@ -7,7 +7,8 @@
 #define BDPT_PARAMS(P)                                                                                                 \
     P(int, maxdepth, 5, 0, 60000, "most scattering vertices of a path, specular ones included")                        \
     P(int, rrdepth, 3, 0, 100000, "vertices after which Russian roulette may end a path, from either side")            \
-    P(int, lightpaths, -1, -1, 1000000000, "paths from lights in each pass; -1: as many as the picture has pixels")    \
+    P(int, lightpaths, -1, -1, 1000000000,                                                                             \
+      "paths from lights in each pass; -1 or 0: as many as the picture has pixels")                                    \
     P(int, connections, -1, -1, 60000,                                                                                 \
       "vertices of a light path to which each vertex of a camera path is connected, chosen at random; -1: all; 0: "    \
       "none, and weights know it")                                                                                     \

@@ -29,6 +29,8 @@ constexpr uint32_t kMostVertices = 1u << 21;  // 128 MiB: lavapipe binds no larg
 // weights alone keeps the sum of weights at 1, and lowers the variance.
 constexpr float kStochasticShare = 0.25f;
 
+constexpr double kLeastRadius = 1e-6;  // of merging, as a share of the scene's: as sppm's minradius
+
 using Counters = std::array<uint32_t, kernel::BIDIRECTIONAL_COUNTERS>;
 
 class BidirectionalRender {
@@ -191,6 +193,8 @@ class BidirectionalRender {
             const uint32_t end = pass_.splats != 0 ? pass_.paths : splatted_;
             const uint32_t count = std::min(part_, end - first);
             if (!trace_light_paths(first, count)) continue;
+            session_.add_count("light_paths", count);
+            session_.add_count("light_vertices", kept_[kernel::LIGHT_VERTICES]);
             trace_camera_paths();
             first += count;
         }
@@ -205,7 +209,9 @@ class BidirectionalRender {
     void set_radius(uint64_t number) {
         if (!merges_) return;
         const double scene_radius = double(session_.scene.record.bounds.w);
-        const double radius = first_radius() * std::sqrt(memoryless_scale(number, options_.alpha));
+        // For smaller disks, rounding errors of positions would matter.
+        const double radius =
+            std::max(first_radius() * std::sqrt(memoryless_scale(number, options_.alpha)), kLeastRadius * scene_radius);
         pass_.radius = float(radius);
         const double area = std::numbers::pi * (radius / scene_radius) * (radius / scene_radius);
         pass_.eta = float(std::max(area * double(pass_.paths) * double(share_), 1e-30));
@@ -234,10 +240,6 @@ class BidirectionalRender {
             make_sums(std::min(part_, kMostVertices / numbers_) * numbers_);
             part_ = std::max(1u, std::min(part_, kMostVertices / numbers_));
             fits = false;
-        }
-        if (fits && pass_.splats != 0) {
-            session_.add_count("light_paths", count);
-            session_.add_count("light_vertices", kept_[kernel::LIGHT_VERTICES]);
         }
         if (pass_.splats != 0) session_.add_count("splats", kept_[kernel::LIGHT_SPLATS]);
         return fits;
