@@ -3,8 +3,8 @@
 //
 // False alarms: kAlpha (1e-6) for each image that is compared, at fixed seeds. Power: a factor wrong by 3 % in the image is more than
 // eight standard errors of its mean.
-#include "support/agreement.h"
 #include "support/blocks.h"
+#include "support/same_image.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -233,34 +233,14 @@ TEST(Bidirectional, UnweightedStrategiesAreShownOneByOne) {
 
 // ---- The same image --------------------------------------------------------------------------------------------------
 
+// One path that differs by a rounding may reach several pixels: the share of docs/determinism.md, twice.
 TEST(Bidirectional, SameOnEveryBackendAndThread) {
-    for (const char* name : {"reference/diffuse", "reference/dielectric-rough", "analytic/box-half"}) {
-        RenderSettings settings = settings_of("cpu", "bdpt:maxdepth=5", 3, 32);
-        settings.threads = 1;
-        const Rendered one = render_file(scene_path(name), settings);
-        for (const std::string& backend : usable_backends())
-            for (const unsigned threads : {1u, 2u, 7u}) {
-                if (backend != "cpu" && threads > 1) continue;
-                SCOPED_TRACE(fmt::format("{} {} {}", name, backend, threads));
-                settings.backend = backend;
-                settings.threads = threads;
-                const Rendered other = render_file(scene_path(name), settings);
-                size_t equal = 0;
-                for (size_t i = 0; i < one.pixels.size(); ++i) equal += one.pixels[i].sum == other.pixels[i].sum;
-                // One path that differs by a rounding may reach several pixels: the share of docs/determinism.md, twice.
-                EXPECT_GE(double(equal), (backend == "cpu" ? 1.0 : 0.996) * double(one.pixels.size()));
-            }
-    }
+    for (const char* name : {"reference/diffuse", "reference/dielectric-rough", "analytic/box-half"})
+        expect_same_on_every_backend(name, settings_of("cpu", "bdpt:maxdepth=5", 3, 32), 0.996);
 }
 
 TEST_P(Bidirectional, CropsArePartsOfTheWhole) {
-    RenderSettings settings = settings_of(GetParam(), "bdpt", 2, 32);
-    const Rendered all = render_file(scene_path("reference/diffuse"), settings);
-    settings.crop = {{5, 9, 20, 30}};
-    const Rendered part = render_file(scene_path("reference/diffuse"), settings);
-    for (int y = 9; y < 30; ++y)
-        for (int x = 5; x < 20; ++x)
-            for (int c = 0; c < 3; ++c) EXPECT_EQ(part.value(x - 5, y - 9, c), all.value(x, y, c)) << x << " " << y;
+    expect_crop_is_part_of_the_whole("reference/diffuse", settings_of(GetParam(), "bdpt", 2, 0));
 }
 
 }  // namespace

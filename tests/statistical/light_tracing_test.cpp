@@ -4,6 +4,7 @@
 // False alarms: each test compares blocks of pixels, with a total rate of 1e-6 per image by Sidak's correction, at fixed seeds. Power: a
 // factor wrong by 5 % in half of the picture is more than eight standard errors of its mean.
 #include "support/blocks.h"
+#include "support/same_image.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -125,39 +126,16 @@ TEST_P(LightTracing, AgreesWithPathTracing) {
     }
 }
 
+// One path that differs by a rounding may reach several pixels: the share of docs/determinism.md, twice.
 TEST(LightTracing, SameOnEveryBackendAndThread) {
     for (const char* name :
-         {"reference/diffuse", "reference/textures", "reference/thin-lens", "analytic/medium-shadow"}) {
-        const Rendered one = [&] {
-            RenderSettings settings = settings_of("cpu", "light:maxdepth=6", 3, 32);
-            settings.threads = 1;
-            return render_file(kScenes + name + ".pbrt", settings);
-        }();
-        for (const std::string& backend : usable_backends())
-            for (const unsigned threads : {1u, 2u, 7u}) {
-                if (backend != "cpu" && threads > 1) continue;
-                SCOPED_TRACE(fmt::format("{} {} {}", name, backend, threads));
-                RenderSettings settings = settings_of(backend, "light:maxdepth=6", 3, 32);
-                settings.threads = threads;
-                const Rendered other = render_file(kScenes + name + ".pbrt", settings);
-                size_t equal = 0;
-                for (size_t i = 0; i < one.pixels.size(); ++i) equal += one.pixels[i].sum == other.pixels[i].sum;
-                // One path that differs by a rounding may reach several pixels: the share of docs/determinism.md, twice.
-                EXPECT_GE(double(equal), (backend == "cpu" ? 1.0 : 0.996) * double(one.pixels.size()));
-            }
-    }
+         {"reference/diffuse", "reference/textures", "reference/thin-lens", "analytic/medium-shadow"})
+        expect_same_on_every_backend(name, settings_of("cpu", "light:maxdepth=6", 3, 32), 0.996);
 }
 
 // A crop is that part of the whole, to the bit; passes alone are those of the whole.
 TEST_P(LightTracing, CropsArePartsOfTheWhole) {
-    const std::string file = kScenes + "reference/diffuse.pbrt";
-    RenderSettings settings = settings_of(GetParam(), "light", 2, 32);
-    const Rendered whole = render_file(file, settings);
-    settings.crop = {{5, 9, 20, 30}};
-    const Rendered part = render_file(file, settings);
-    for (int y = 9; y < 30; ++y)
-        for (int x = 5; x < 20; ++x)
-            for (int c = 0; c < 3; ++c) EXPECT_EQ(part.value(x - 5, y - 9, c), whole.value(x, y, c)) << x << " " << y;
+    expect_crop_is_part_of_the_whole("reference/diffuse", settings_of(GetParam(), "light", 2, 0));
 }
 
 // A white plane under a white sky is 1, up to the picture's border and under filters with negative lobes.

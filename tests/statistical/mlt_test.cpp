@@ -2,8 +2,8 @@
 //
 // Pixels of a pass share its brightness, and chains visit neighbours in turn, so the error of a mean comes from renderings with
 // different seeds. False alarms: 1e-6 for each scene, at fixed seeds. Power: the tests state it.
-#include "support/agreement.h"
 #include "support/blocks.h"
+#include "support/same_image.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -123,35 +123,15 @@ TEST(Metropolis, PassesTellTheirError) {
     EXPECT_LT(estimated.value() / spread, 2.5);
 }
 
+// A chain that differs by a rounding goes another way from there on, and reaches many pixels. CPU backends differ at the rims of
+// quadrics alone.
 TEST(Metropolis, SameOnEveryBackendAndThread) {
-    for (const char* name : {"reference/diffuse", "reference/dielectric-rough"}) {
-        RenderSettings settings = settings_of("cpu", "mlt:maxdepth=5,chains=1000", 3, 24);
-        settings.threads = 1;
-        const Rendered one = render_file(scene_path(name), settings);
-        for (const std::string& backend : usable_backends())
-            for (const unsigned threads : {1u, 2u, 7u}) {
-                if (backend != "cpu" && threads > 1) continue;
-                SCOPED_TRACE(fmt::format("{} {} {}", name, backend, threads));
-                settings.backend = backend;
-                settings.threads = threads;
-                const Rendered other = render_file(scene_path(name), settings);
-                size_t equal = 0;
-                for (size_t i = 0; i < one.pixels.size(); ++i) equal += one.pixels[i].sum == other.pixels[i].sum;
-                // A chain that differs by a rounding goes another way from there on, and reaches many pixels. CPU backends differ
-                // at the rims of quadrics alone.
-                EXPECT_GE(double(equal), (backend == "cpu" ? 1.0 : 0.95) * double(one.pixels.size()));
-            }
-    }
+    for (const char* name : {"reference/diffuse", "reference/dielectric-rough"})
+        expect_same_on_every_backend(name, settings_of("cpu", "mlt:maxdepth=5,chains=1000", 3, 24), 0.95);
 }
 
 TEST_P(Metropolis, CropsArePartsOfTheWhole) {
-    RenderSettings settings = settings_of(GetParam(), "mlt", 2, 32);
-    const Rendered all = render_file(scene_path("reference/diffuse"), settings);
-    settings.crop = {{5, 9, 20, 30}};
-    const Rendered part = render_file(scene_path("reference/diffuse"), settings);
-    for (int y = 9; y < 30; ++y)
-        for (int x = 5; x < 20; ++x)
-            for (int c = 0; c < 3; ++c) EXPECT_EQ(part.value(x - 5, y - 9, c), all.value(x, y, c)) << x << " " << y;
+    expect_crop_is_part_of_the_whole("reference/diffuse", settings_of(GetParam(), "mlt", 2, 0));
 }
 
 TEST_P(Metropolis, DarknessIsBlack) {

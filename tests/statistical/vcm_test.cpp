@@ -2,8 +2,8 @@
 // against themselves.
 //
 // False alarms: kAlpha (1e-6) for each image that is compared, at fixed seeds.
-#include "support/agreement.h"
 #include "support/blocks.h"
+#include "support/same_image.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -116,24 +116,10 @@ AttributeEnd
     }
 }
 
+// One path that differs by a rounding may reach several pixels, by splats and as photons.
 TEST(Merging, SameOnEveryBackendAndThread) {
-    for (const char* integrator : {"vcm:maxdepth=5,radius=0.05", "bpm:maxdepth=5,radius=0.05"}) {
-        RenderSettings settings = settings_of("cpu", integrator, 3, 32);
-        settings.threads = 1;
-        const Rendered one = render_file(scene_path("reference/diffuse"), settings);
-        for (const std::string& backend : usable_backends())
-            for (const unsigned threads : {1u, 2u, 7u}) {
-                if (backend != "cpu" && threads > 1) continue;
-                SCOPED_TRACE(fmt::format("{} {} {}", integrator, backend, threads));
-                settings.backend = backend;
-                settings.threads = threads;
-                const Rendered other = render_file(scene_path("reference/diffuse"), settings);
-                size_t equal = 0;
-                for (size_t i = 0; i < one.pixels.size(); ++i) equal += one.pixels[i].sum == other.pixels[i].sum;
-                // One path that differs by a rounding may reach several pixels, by splats and as photons.
-                EXPECT_GE(double(equal), (backend == "cpu" ? 1.0 : 0.99) * double(one.pixels.size()));
-            }
-    }
+    for (const char* integrator : {"vcm:maxdepth=5,radius=0.05", "bpm:maxdepth=5,radius=0.05"})
+        expect_same_on_every_backend("reference/diffuse", settings_of("cpu", integrator, 3, 32), 0.99);
 }
 
 // Merging vanishes with the radius: what is left is bdpt, and not a quotient of zeros.

@@ -2,17 +2,14 @@
 #ifndef LAMPYRIS_BPM_PARAMS
 #define LAMPYRIS_BPM_PARAMS
 
-#include "core/kernel/params.h"
+#include "integrators/bidirectional/bidirectional_params.h"
 
-#define BPM_PARAMS(P)                                                                                               \
-    P(int, maxdepth, 5, 0, 60000, "most scattering vertices of a path, specular ones included")                     \
-    P(int, rrdepth, 3, 0, 100000, "vertices after which Russian roulette may end a path, from either side")         \
-    P(int, lightpaths, -1, -1, 1000000000,                                                                          \
-      "paths from lights in each pass; -1 or 0: as many as the picture has pixels")                                 \
-    P(uint, weights, 0, 0, 1, "{balance|power} heuristic that weighs the vertices at which a path may be merged")   \
-    P(float, radius, 0, 0, 1e30f, "of merging in the first pass, in scene units; 0: `share` of the scene's radius") \
-    P(float, share, 0.003f, 1e-6f, 1, "radius of merging in the first pass over that of the scene")                 \
-    P(float, alpha, 0.75f, 0.01f, 1, "how slowly the radius shrinks: radius^2 falls as pass^(alpha - 1)")
+// clang-format off
+#define BPM_PARAMS(P) \
+    SUBPATH_PARAMS(P) \
+    P(uint, weights, 0, 0, 1, "{balance|power} heuristic that weighs the vertices at which a path may be merged") \
+    MERGING_PARAMS(P)
+// clang-format on
 PARAMS(BpmParams, BPM_PARAMS)
 
 #endif
