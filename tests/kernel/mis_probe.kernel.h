@@ -119,7 +119,8 @@ FN float weight_of_connection(IN(ProbePath) p, IN(MisSums) m, uint x, uint h) {
     float inverse_d2 = 1.0f / mis_area(p, length_squared(way(x, y)));
     float from_x = vertices[x].to_light * abs(cosine(y, x)) * inverse_d2;
     float from_y = vertices[y].to_camera * abs(cosine(x, y)) * inverse_d2;
-    return mis_weight(mis_end(m_y, from_x, vertices[y].to_light, 0.0f, h) + mis_end(m, from_y, vertices[x].to_camera, 0.0f, h));
+    return mis_weight(mis_end(m_y, from_x, vertices[y].to_light, 0.0f, h) +
+                      mis_end(m, from_y, vertices[x].to_camera, 0.0f, h));
 }
 
 // weight_of_hit_light, weight_of_environment: the sums are those that leave vertex 1

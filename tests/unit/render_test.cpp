@@ -243,12 +243,12 @@ INSTANTIATE_TEST_SUITE_P(Backends, TwoThreads, testing::ValuesIn(usable_backends
 
 // The statements of docs/stats.md about each; add new integrators here.
 TEST(ErrorRateOf, EachIntegratorIsWhatTheorySays) {
-    const std::map<std::string, ErrorRate> expected = {{"path", ErrorRate::of_samples()},
-                                                       {"ao", ErrorRate::of_samples()},
-                                                       {"light", ErrorRate::of_samples()},
-                                                       {"sppm", ErrorRate::of_photons(0.25)},
-                                                       {"ppm", ErrorRate::of_photons(0.25)},
-                                                       {"photon_map", ErrorRate::of_photons(1.0)}};
+    const std::map<std::string, ErrorRate> expected = {
+        {"path", ErrorRate::of_samples()},    {"ao", ErrorRate::of_samples()},
+        {"light", ErrorRate::of_samples()},   {"bdpt", ErrorRate::of_samples()},
+        {"mlt", ErrorRate::of_samples()},     {"vcm", ErrorRate::of_photons(0.75)},
+        {"bpm", ErrorRate::of_photons(0.75)}, {"sppm", ErrorRate::of_photons(0.25)},
+        {"ppm", ErrorRate::of_photons(0.25)}, {"photon_map", ErrorRate::of_photons(1.0)}};
     for (const std::string& name : integrators().names()) {
         SCOPED_TRACE(name);
         ASSERT_TRUE(expected.contains(name));

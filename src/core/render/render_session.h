@@ -72,7 +72,7 @@ class RenderSession {
     uint32_t eye_samples = 1;  // per pixel, for integrators that fix them
     std::string photon_map;    // NAME[:key=value,...]; for integrators that use one
     PhotonStatistics photons;
-    std::vector<ImageLayer> layers;  // become channels NAME.R, NAME.G, NAME.B of the image
+    std::vector<ImageLayer> layers;                  // become channels NAME.R, NAME.G, NAME.B of the image
     ErrorRate error_rate = ErrorRate::of_samples();  // the integrator's convergence rate in theory
     std::string unseen_error;  // an error that the variance between passes cannot show; makes the estimate unstable
 
