@@ -14,9 +14,9 @@ struct Emission {
     // For methods that weigh paths from both ends:
     vec3 position;  // on the light; undefined for lights at infinity
     vec3 ng;        // unit normal of an area light there
-    float
-        place_pdf;  // of the light and the point: per area; at infinity of the light and the direction: per solid angle;
-                    // lights at a point and distant lights: of the light alone
+    // Of the light and the point: per area. At infinity, of the light and the direction: per solid angle. Lights at a
+    // point and distant lights: of the light alone.
+    float place_pdf;
     float direction_pdf;  // of the direction: per solid angle; at infinity, of the point of the disk: per area
 };
 
