@@ -18,6 +18,8 @@
 // scenes run. Pass it copies of structs: a struct whose address another function gets stays in memory.
 #define RARE_FN inline __attribute__((noinline))
 #define RARELY(condition) __builtin_expect((condition), false)
+// Whether a RARE_FN is a function of its own; if not, every call adds its code to the kernel once more.
+#define SEPARATE_FUNCTIONS 1
 #ifdef KERNEL_INLINE_ALL
 #define FN inline __attribute__((always_inline))
 #else
@@ -73,6 +75,7 @@ CONST bool DRIVERS_END_LOOPS = false;
 #define FN
 #define RARE_FN
 #define RARELY(condition) (condition)
+#define SEPARATE_FUNCTIONS 0
 #define SCENE_RO(binding_, T, name) \
     layout(std430, set = 0, binding = binding_) readonly restrict buffer name##Block { T name[]; };
 #ifdef KERNEL_WIDE_READS
