@@ -5,6 +5,7 @@
 #include "commands/interrupt.h"
 #include "commands/progress.h"
 #include "commands/render_options.h"
+#include "commands/replay.h"
 #include "core/base/file.h"
 #include "core/base/text.h"
 #include "core/image/image_io.h"
@@ -14,7 +15,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <array>
 #include <memory>
 #include <optional>
 
@@ -54,46 +54,6 @@ void print_summary(const RunRecord& run, const std::vector<std::string>& outputs
             "float: scale the lights down, and the exposure up\n",
             counted(run.film.unknown_errors, "pixel"));
     for (const std::string& output : outputs) print("wrote {}\n", output);
-}
-
-// What each strategy of a bidirectional method adds to the first pixel: its share, weighed and alone. Those that add nothing
-// are left out.
-nlohmann::ordered_json strategies_of(const Image& image) {
-    nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    const std::string_view prefix = "strategy.", suffix = ".R";
-    for (const std::string& channel : image.channel_names) {
-        if (!channel.starts_with(prefix) || !channel.ends_with(suffix)) continue;
-        const std::string name = channel.substr(prefix.size(), channel.size() - prefix.size() - suffix.size());
-        const auto rgb = [&](const std::string& layer) {
-            std::array<float, 3> value{};
-            for (size_t c = 0; c < 3; ++c)
-                value[c] = image.at(0, 0, image.find_channel(fmt::format("{}.{}.{}", layer, name, "RGB"[c])));
-            return value;
-        };
-        const std::array<float, 3> weighed = rgb("strategy"), alone = rgb("alone");
-        if (alone == std::array<float, 3>{}) continue;
-        list.push_back({{"strategy", name}, {"radiance", weighed}, {"alone", alone}});
-    }
-    return list;
-}
-
-// One sample of one pixel: for debugging, and for comparing backends.
-void print_replay(const RenderOutcome& outcome, const std::array<int, 3>& replay) {
-    const kernel::FilmPixel& p = outcome.pixels[0];
-    nlohmann::ordered_json json = {{"schema", "lampyris.replay/1"},
-                                   {"pixel", {replay[0], replay[1]}},
-                                   {"pass", replay[2]},
-                                   {"backend", outcome.record.backend},
-                                   {"radiance", {p.sum.x, p.sum.y, p.sum.z}},
-                                   {"weight", p.weight},
-                                   {"rays", p.rays},
-                                   {"non_finite", p.left_out},
-                                   {"normal", {p.normal.x, p.normal.y, p.normal.z}},
-                                   {"albedo", {p.albedo.x, p.albedo.y, p.albedo.z}},
-                                   {"depth", p.depth}};
-    if (const nlohmann::ordered_json strategies = strategies_of(outcome.image); !strategies.empty())
-        json["strategies"] = strategies;
-    print("{}\n", json.dump(2));
 }
 
 // Shows the library's messages on the console, and passes Ctrl-C to the library.
@@ -136,7 +96,7 @@ int render(const RenderOptions& options) {
     ConsoleObserver observer(options);
     RenderOutcome outcome = render(options.request, observer);
     if (options.request.replay) {
-        print_replay(outcome, *options.request.replay);
+        print("{}", replay_text(outcome, *options.request.replay));
         return int(ExitCode::kDone);
     }
     for (const std::string& output : observer.outputs()) {

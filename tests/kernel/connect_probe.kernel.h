@@ -22,6 +22,8 @@ KERNEL(connect_probe) {
     vec4 second = inputs[2u * index + 1u];
     if (kind == PROBE_CONNECT) {
         CameraConnection c;
+        c.wi = vec3(0.0f);  // GCC does not see that it is not read unless it is set
+        c.end = vec3(0.0f);
         bool seen = camera_connect(vec3(first), vec2(second.x, second.y), c);
         results[3u * index] = vec4(0.0f, 0.0f, -1.0f, 0.0f);
         if (!seen) return;

@@ -142,11 +142,13 @@ class CpuDevice final : public Device {
         std::vector<void*> pointers(bound.size());
         for (size_t i = 0; i < bound.size(); ++i)
             pointers[i] = bound[i] ? static_cast<CpuBuffer&>(*bound[i]).data() : nullptr;
-        static void* const kNoScene[CpuScene::kBufferCount] = {};
         const CpuScene* cpu_scene = static_cast<const CpuScene*>(scene);
         uint32_t unfinished = 0;
         CpuInvocation call;
-        call.scene_buffers = cpu_scene ? cpu_scene->buffers() : kNoScene;
+        std::array<void*, CpuScene::kBufferCount> scene_buffers{};
+        if (cpu_scene) std::copy_n(cpu_scene->buffers(), scene_buffers.size(), scene_buffers.begin());
+        if (path_log()) scene_buffers[kernel::BINDING_PATH_LOG] = static_cast<CpuBuffer&>(*path_log()).data();
+        call.scene_buffers = scene_buffers.data();
         call.kernel_buffers = pointers.data();
         call.tracer = cpu_scene ? &cpu_scene->tracer() : nullptr;
         call.unfinished = &unfinished;

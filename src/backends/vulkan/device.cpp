@@ -62,6 +62,7 @@ class VulkanDevice final : public Device {
                                                      BufferOptions{.read_back = true});
         unfinished_->fill_zero();
         no_scene_.buffers[kernel::BINDING_UNFINISHED] = unfinished_->binding();
+        no_scene_.buffers[kernel::BINDING_PATH_LOG] = unfinished_->binding();  // anything: nothing is written there
         // CPU drivers divide with the CPU's instructions, which round as IEEE 754 specifies.
         const Switch exact = read_switch(options, "exact", Switch::off);
         shader_options_.exact = exact == Switch::on || (exact == Switch::automatic && !context_->can.is_cpu);
@@ -108,7 +109,7 @@ class VulkanDevice final : public Device {
         const auto start = Clock::now();
         const CompileNotice notice(file);
         ShaderOptions options = shader_options_;
-        options.effects = specialise_ ? effects : kernel::kAllEffects;
+        options.effects = specialise_ ? effects : effects | kernel::kAllEffects;
         options.names = !find_kernel_buffers(file).has_value();
         CompiledShader shader = compile_shader(file, options, cache_);
         std::shared_ptr<VulkanKernel> kernel;
@@ -141,7 +142,9 @@ class VulkanDevice final : public Device {
             if (buffer.boxes) handles[i].structure = buffer.boxes->top_level();
         }
         guarded(fmt::format("running kernel {}", vulkan_kernel.file()), [&] {
-            const SceneBindings& bindings = scene ? dynamic_cast<const VulkanScene&>(*scene).bindings() : no_scene_;
+            SceneBindings bindings = scene ? dynamic_cast<const VulkanScene&>(*scene).bindings() : no_scene_;
+            if (const BufferHandle& log = path_log())
+                bindings.buffers[kernel::BINDING_PATH_LOG] = dynamic_cast<const VulkanBuffer&>(*log).binding();
             const VulkanKernel::Spent spent =
                 vulkan_kernel.run(bindings, handles, begin, count, [&] { return is_unfinished(); });
             statistics_.compile_s += spent.compile_s;

@@ -28,6 +28,7 @@ VulkanScene::VulkanScene(std::shared_ptr<Context> context, std::shared_ptr<Memor
         for (const SceneBuffer& buffer : with_bvh.buffers()) add(buffer);
     }
     bindings_.buffers[kernel::BINDING_UNFINISHED] = unfinished.binding();
+    bindings_.buffers[kernel::BINDING_PATH_LOG] = unfinished.binding();  // anything, unless the device has a path log
 }
 
 VulkanScene::~VulkanScene() = default;

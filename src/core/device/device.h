@@ -13,6 +13,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace lampyris {
@@ -123,6 +124,15 @@ class Device {
     virtual size_t build_boxes(const BufferHandle& boxes, uint32_t count);
 
     virtual DeviceStatistics statistics() const = 0;
+
+    // The buffer to which kernels with EFFECT_PATH_LOG write (core/kernel/path_log.h); none by default.
+    void set_path_log(BufferHandle log) { path_log_ = std::move(log); }
+
+ protected:
+    const BufferHandle& path_log() const { return path_log_; }
+
+ private:
+    BufferHandle path_log_;
 };
 
 // Number of invocations of a kernel in which each invocation handles BATCH items (core/kernel/prelude.h).

@@ -31,6 +31,8 @@ class Effects {
         }
         mask_ |= effects;
     }
+    // Not an effect of the scene, so no request.
+    void ask_path_log() { mask_ |= kernel::EFFECT_PATH_LOG; }
     uint64_t mask() const { return mask_; }
     bool has(uint64_t effect) const { return (mask_ & effect) != 0; }
     const std::vector<EffectRequest>& requests() const { return requests_; }

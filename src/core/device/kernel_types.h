@@ -20,6 +20,7 @@ using glm::vec4;
 #define CONST inline constexpr
 #include "core/kernel/effects.h"
 #include "core/kernel/layout.h"
+#include "core/kernel/path_log_layout.h"
 #include "core/kernel/photon_layout.h"
 #include "core/kernel/scene_buffers.h"
 #undef CONST

@@ -3,13 +3,6 @@
 #ifndef LAMPYRIS_KERNEL_BSDF_TYPES
 #define LAMPYRIS_KERNEL_BSDF_TYPES
 
-CONST uint LOBE_REFLECTION = 1u;
-CONST uint LOBE_TRANSMISSION = 2u;
-CONST uint LOBE_DIFFUSE = 4u;
-CONST uint LOBE_GLOSSY = 8u;
-CONST uint LOBE_SPECULAR = 16u;
-CONST uint LOBE_BOTH_SIDES = 3u;  // reflection and transmission: the choice is unrestricted
-
 // What an eye path of photon mapping does at a surface.
 CONST uint VISIBLE_FOLLOW = 0u;  // sample a direction and continue: (nearly) specular
 CONST uint VISIBLE_GATHER = 1u;  // estimate the reflected radiance from photons here

@@ -37,6 +37,8 @@ LAMPYRIS_EFFECTS(LAMPYRIS_EFFECT_CONSTANT)
 #define LAMPYRIS_OR_EFFECT(constant, bit, name, cost) | constant
 CONST EffectSet kAllEffects = EffectSet(0u) LAMPYRIS_EFFECTS(LAMPYRIS_OR_EFFECT);
 #undef LAMPYRIS_OR_EFFECT
+// No scene needs this one: a replay asks for it, and paths are then logged (path_log.h).
+CONST EffectSet EFFECT_PATH_LOG = EFFECT_BIT(31);
 // Sets for which C++ kernels are built (CPU_EFFECTS of lampyris_kernel): a scene runs on the smallest one that has all of its
 // effects.
 CONST EffectSet kDiffuseEffects = EFFECT_SMOOTH_NORMALS | EFFECT_AREA_LIGHTS;

@@ -24,6 +24,19 @@ struct Emission {
 // for the direction.
 CONST uint EMISSION_DIMENSIONS = 6u;
 
+RARE_FN void log_emits(Emission e) {
+    PathLogRecord r = log_record(LOG_START);
+    r.light = e.light;
+    r.position = e.origin;
+    r.normal = e.ng;
+    r.direction = e.direction;
+    r.pdf = e.place_pdf;
+    r.extra = e.direction_pdf;
+    r.throughput = rgb_of(e.power);
+    r.medium = e.medium;
+    log_write(r);
+}
+
 // A point on the disk through which light from infinity enters the scene. As in pbrt, the disk has the radius of the
 // scene's bounding sphere, and touches it.
 FN vec3 distant_origin(vec3 to_light, vec2 u) {
@@ -144,7 +157,9 @@ FN bool emit_photon(uint u_choice, float u_side, vec2 u_place, uvec2 u_direction
         e.medium = light_medium(e.light, e.direction, e.direction);
         e.power *= medium_transmittance(e.medium, INFINITE_DISTANCE);
     }
-    return found && !is_black(e.power);
+    if (!found || is_black(e.power)) return false;
+    PATH_LOG(log_emits(e));
+    return true;
 }
 
 #endif

@@ -96,6 +96,11 @@ FN vec3 film_sensor(Spectrum radiance) {
     return limit > 0.0f && largest > limit ? value * (limit / largest) : value;
 }
 
+// The log's end of camera path `path`: its radiance is a sample of the pixel with this weight.
+RARE_FN void log_film_sample(uint path, Spectrum radiance, float weight) {
+    log_sample(LOG_CAMERA_PATH, path, radiance, film_sensor(radiance) * weight, scene[0].camera.imaging_ratio * weight);
+}
+
 // One sample of a pixel: the camera ray, the pixel filter's weight, and a sampler at the first unused dimension.
 struct CameraSample {
     Ray ray;

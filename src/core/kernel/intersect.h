@@ -216,6 +216,7 @@ FN bool intersect_scene_from(INOUT(vec3) origin, vec3 direction, OUT(Surface) s)
         if (!surface_at(hit, origin, direction, s)) return false;
         s.distance += passed;
         if (surface_fate(surface_opacity(s), origin, direction) == SURFACE_STOPS) return true;
+        PATH_LOG(log_passes(s.position, s.distance, log_now[0].medium, LOG_PASS_MASK));
         passed = s.distance;
         origin = origin_beyond(s.position, s.way, direction);
     }

@@ -96,6 +96,13 @@ struct BvhNode {
 
 // ---- Materials -------------------------------------------------------------------------------------------------------
 
+CONST uint LOBE_REFLECTION = 1u;
+CONST uint LOBE_TRANSMISSION = 2u;
+CONST uint LOBE_DIFFUSE = 4u;
+CONST uint LOBE_GLOSSY = 8u;
+CONST uint LOBE_SPECULAR = 16u;
+CONST uint LOBE_BOTH_SIDES = 3u;  // reflection and transmission: the choice is unrestricted
+
 CONST uint MATERIAL_REMAP = 1u;  // roughness is remapped (alpha = sqrt(roughness)) in the kernel, after textures
 CONST uint MATERIAL_USES_REFLECTANCE = 2u;  // conductor: color0 is `reflectance`, from which eta = 1 and k follow
 CONST uint MATERIAL_REMAP_COAT = 4u;        // as MATERIAL_REMAP, for the interface's roughness

@@ -12,7 +12,9 @@ KERNEL(pixel_loop) {
     for (; i < w.samples; ++i) {
         CameraSample camera = camera_sample(w, local, i);
         FirstHit first = no_first_hit();
+        PATH_LOG(log_path(LOG_CAMERA_PATH, i, 0u));
         Spectrum radiance = radiance_along(camera.ray, camera.numbers, first);
+        PATH_LOG(log_film_sample(i, radiance, camera.weight));
         film_add_first_hit(pixel, first);
         film_add(pixel, film_sensor(radiance), camera.weight, camera.pass);
     }

@@ -28,6 +28,7 @@
 // Buffers of the scene (set 0) and of the kernel (set 1): `scene_buffers_` and `kernel_buffers_` are the tables of a
 // Kernel instance. The latter also gets each buffer's name and element size, because callers pass buffers by name.
 #define SCENE_RO(binding_, T, name) const T* __restrict name = static_cast<const T*>(scene_buffers_[binding_]);
+#define SCENE_RW(binding_, T, name) T* __restrict name = static_cast<T*>(scene_buffers_[binding_]);
 // An array of pairs of vec4. READ_PAIR reads one pair at once, as a VecPair (see below).
 #define SCENE_RO_PAIRS(binding_, name) SCENE_RO(binding_, VecPair, name)
 #define READ_PAIR(name, i) name[i]
@@ -78,6 +79,8 @@ CONST bool DRIVERS_END_LOOPS = false;
 #define SEPARATE_FUNCTIONS 0
 #define SCENE_RO(binding_, T, name) \
     layout(std430, set = 0, binding = binding_) readonly restrict buffer name##Block { T name[]; };
+#define SCENE_RW(binding_, T, name) \
+    layout(std430, set = 0, binding = binding_) restrict buffer name##Block { T name[]; };
 #ifdef KERNEL_WIDE_READS
 // A CPU driver reads the components of each lane one by one, and checks each against the buffer's size: half as many
 // reads of twice the width are cheaper.

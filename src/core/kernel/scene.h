@@ -6,12 +6,14 @@
 #ifndef __cplusplus  // C++ has the layouts in its namespace already (cpp_kernel.h)
 #include "core/kernel/effects.h"
 #include "core/kernel/layout.h"
+#include "core/kernel/path_log_layout.h"
 #include "core/kernel/scene_buffers.h"
 #endif
 #include "core/kernel/bindings.h"
 #include "core/kernel/surface.h"
 #include "core/kernel/math.h"
 #include "core/kernel/spectrum.h"
+#include "core/kernel/path_log.h"
 #include "core/kernel/random.h"
 #include "core/kernel/sampling.h"
 #include "core/kernel/texture.h"
@@ -32,6 +34,7 @@ FN void invocation_begin() {
     traced_rays[0] = 0u;
     walk_turn[0] = 0u;
     walk_turns[0] = 0u;
+    PATH_LOG(log_path(LOG_CAMERA_PATH, 0u, 0u));  // unless the kernel says otherwise
 }
 FN void invocation_end() { walk_check(); }
 

@@ -27,6 +27,7 @@ CONST uint BINDING_BVH_NODES = 14u;  // of the BVH2, which kernels traverse them
 CONST uint BINDING_BVH_TRIANGLES = 15u;
 CONST uint BINDING_TOP_LEVEL = 16u;   // Vulkan's acceleration structure, for ray queries
 CONST uint BINDING_UNFINISHED = 17u;  // Vulkan's flag of REPORT_UNFINISHED
-CONST uint SCENE_BINDINGS = 19u;
+CONST uint BINDING_PATH_LOG = 19u;    // path_log.h; a device binds it (Device::set_path_log)
+CONST uint SCENE_BINDINGS = 20u;
 
 #endif

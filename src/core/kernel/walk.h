@@ -38,6 +38,8 @@ struct Vertex {
     vec3 wo;  // towards the previous vertex
 };
 
+#include "core/kernel/walk_log.h"
+
 // ---- Loops that a driver ends ----------------------------------------------------------------------------------------
 // A turn begins by setting walk_turn to walk_turns, and resets it to less once another turn is known to follow. So the
 // two are equal if the loop's own code left it, and differ if the driver ended it. Both are 0 until the first turn,
@@ -85,6 +87,7 @@ FN Walk walk_begin(IN(Ray) ray, uint medium, uint transport, int maxdepth) {
     w.passed = 0u;
     w.escaped = false;
     walk_opens();
+    PATH_LOG(log_begins(w));
     return w;
 }
 
@@ -93,7 +96,10 @@ FN Walk walk_begin(IN(Ray) ray, uint medium, uint transport, int maxdepth) {
 FN bool walk_next_or_mask(INOUT(Walk) w, OUT(Surface) s, OUT(uint) fate) {
     if (!walk_takes_turn(w)) return false;
     w.escaped = !intersect_next(w.ray.origin, w.ray.direction, s, fate);
-    if (w.escaped) return false;
+    if (w.escaped) {
+        PATH_LOG(log_escapes(w));
+        return false;
+    }
     if (HAS(EFFECT_MEDIUM)) w.throughput *= medium_transmittance(w.medium, s.distance);
     return true;
 }
@@ -103,11 +109,13 @@ FN bool walk_next(INOUT(Walk) w, OUT(Surface) s) {
     if (!walk_takes_turn(w)) return false;
     w.escaped = !intersect_scene_from(w.ray.origin, w.ray.direction, s);
     if (HAS(EFFECT_MEDIUM)) w.throughput *= medium_transmittance(w.medium, w.escaped ? INFINITE_DISTANCE : s.distance);
+    if (w.escaped) PATH_LOG(log_escapes(w));
     return !w.escaped;
 }
 
 // Continues straight on behind s.
 FN void walk_passes(INOUT(Walk) w, IN(Surface) s) {
+    PATH_LOG(log_passes(s.position, s.distance, w.medium, is_interface(s) ? LOG_PASS_INTERFACE : LOG_PASS_MASK));
     w.ray.origin = origin_beyond(s.position, s.way, w.ray.direction);
     w.passed += 1u;
     if (w.passed <= MAX_PASSED_SURFACES)
@@ -139,7 +147,11 @@ FN Vertex vertex_at(INOUT(Surface) s, vec3 direction) {
     return v;
 }
 
-FN Vertex walk_vertex(IN(Walk) w, INOUT(Surface) s) { return vertex_at(s, w.ray.direction); }
+FN Vertex walk_vertex(IN(Walk) w, INOUT(Surface) s) {
+    Vertex v = vertex_at(s, w.ray.direction);
+    PATH_LOG(log_vertex(w, s, v));
+    return v;
+}
 
 // The cosine for f(wo, wi) if a vertex of a walk from a light, which arrived there in direction `arriving`, is connected to
 // a point in the unit direction `onward`: |wi.Ns wo.Ng| / |wi.Ng|, with wi towards the light and wo onward, since shading
@@ -173,11 +185,14 @@ FN bool walk_leave(INOUT(Walk) w, IN(Surface) s, IN(Vertex) v, IN(BsdfSample) ne
     float after = max_value(w.throughput);
     float survival = w.transport == TRANSPORT_RADIANCE ? after * w.eta_scale : after / before;
     w.depth += 1;
+    PATH_LOG(log_scatters(w, next, onward));
     if (!(survival > 0.0f) || w.depth > w.maxdepth) return false;
     if (w.transport == TRANSPORT_IMPORTANCE && !is_finite(after)) return false;
     if (w.depth > rrdepth && survival < 1.0f) {
         survival = exact_chance(survival);
-        if (sample_1d_at(numbers, dimension) >= survival) return false;
+        bool ends = sample_1d_at(numbers, dimension) >= survival;
+        PATH_LOG(log_roulette(survival, ends));
+        if (ends) return false;
         w.throughput = w.throughput / survival;
     }
     w.ray.direction = onward;

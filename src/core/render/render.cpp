@@ -156,7 +156,11 @@ Rendering::State::State(RenderRequest wanted, RenderObserver* watching)
         loaded.scene.effects.ask(request.effects, "the request");
         loaded.scene.record_effects(loaded.scene.effects.mask());
     }
-    if (request.replay) apply_replay(*request.replay, loaded);
+    if (request.replay) {
+        apply_replay(*request.replay, loaded);
+        loaded.scene.effects.ask_path_log();
+        loaded.scene.record_effects(loaded.scene.effects.mask());
+    }
     if (request.sampler) loaded.settings.sampler = *request.sampler;
     if (request.seed) loaded.settings.seed = *request.seed;
     sampler = sampler_number(loaded.settings.sampler);
@@ -201,6 +205,8 @@ RenderOutcome Rendering::State::run(uint32_t seed) {
     session.sampler = sampler;
     session.max_slice = request.max_slice;
     session.start_at(request.replay ? uint64_t((*request.replay)[2]) : request.first_pass);
+    std::optional<PathLogger> path_log;
+    if (request.replay) session.path_log = &path_log.emplace(*device);
     RenderOutcome outcome;
     session.on_progress = [&](const RenderProgress& progress, const Film& current) {
         ConvergencePoint point{progress.wall_s,
@@ -228,6 +234,7 @@ RenderOutcome Rendering::State::run(uint32_t seed) {
         outcome.image.add_channels({layer.name + ".R", layer.name + ".G", layer.name + ".B"}, layer.rgb);
     outcome.image.metadata = image_metadata(outcome.record);
     outcome.pixels = film.take_pixels();
+    if (path_log) outcome.paths = path_log->log();
     return outcome;
 }
 

@@ -13,6 +13,7 @@
 #include "core/base/watch.h"
 #include "core/device/device.h"
 #include "core/image/image.h"
+#include "core/render/path_log.h"
 #include "core/render/run_record.h"
 #include "core/scene/load.h"
 
@@ -82,6 +83,7 @@ struct RenderOutcome {
     Image image;
     RunRecord record;
     std::vector<kernel::FilmPixel> pixels;  // the sums behind the image
+    PathLog paths;                          // of a replay
 };
 
 RenderOutcome render(const RenderRequest& request);

@@ -49,6 +49,7 @@ uint32_t RenderSession::next_passes() {
 }
 
 void RenderSession::passes_finished(uint32_t count) {
+    if (path_log) path_log->stop();
     const double seconds = std::chrono::duration<double>(Clock::now() - slice_start_).count();
     progress_.passes += count;
     progress_.wall_s += seconds;

@@ -4,6 +4,7 @@
 #include "core/device/device.h"
 #include "core/render/film.h"
 #include "core/render/forecast.h"
+#include "core/render/path_log.h"
 #include "core/scene/scene.h"
 
 #include <chrono>
@@ -74,6 +75,7 @@ class RenderSession {
     PhotonStatistics photons;
     std::vector<ImageLayer> layers;                  // become channels NAME.R, NAME.G, NAME.B of the image
     ErrorRate error_rate = ErrorRate::of_samples();  // the integrator's convergence rate in theory
+    PathLogger* path_log = nullptr;                  // of a replay: integrators call its functions where it applies
     std::string unseen_error;  // an error that the variance between passes cannot show; makes the estimate unstable
 
     // How many passes to run next, starting with number next_pass(): 0 when the budget is spent or the rendering is

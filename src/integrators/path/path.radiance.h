@@ -28,6 +28,7 @@ FN Spectrum radiance_along(IN(Ray) ray, INOUT(Sampler) numbers, INOUT(FirstHit) 
             float weight =
                 lights_were_sampled ? power_heuristic(bsdf_density, light_pdf(s, previous, direction)) : 1.0f;
             radiance += walk.throughput * emitted * weight;
+            PATH_LOG(log_emission(s, walk.throughput * emitted, weight));
         }
         if (walk_crosses(walk, s)) continue;
         Vertex v = walk_vertex(walk, s);
@@ -58,6 +59,7 @@ FN Spectrum radiance_along(IN(Ray) ray, INOUT(Sampler) numbers, INOUT(FirstHit) 
             float weight =
                 lights_were_sampled ? power_heuristic(bsdf_density, environment_pdf(walk.ray.direction)) : 1.0f;
             radiance += walk.throughput * emitted * weight;
+            PATH_LOG(log_environment(walk.ray.direction, walk.throughput * emitted, weight));
         }
     }
     return radiance;
