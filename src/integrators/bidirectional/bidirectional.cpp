@@ -200,6 +200,16 @@ class BidirectionalRender {
         }
         if (merges_) merge();
         run_finish(pixels_);
+        if (session_.path_log) session_.path_log->follow_light_paths([&](uint32_t path) { trace_again(path); });
+    }
+
+    // One path, with its splats, for the path log: the pass is finished.
+    void trace_again(uint32_t path) {
+        pass_.first_path = path;
+        pass_.part_paths = 1;
+        pass_.splats = 1;
+        upload_pass();
+        run_light_paths(path, 1);
     }
 
     double first_radius() const {
@@ -319,6 +329,7 @@ class BidirectionalRender {
         set.seed = session_.seed;
         set.pass = pass_.number * 0x9e3779b9u + pass_.first_path;  // each part has its own grid
         set.mean_power = session_.scene.record.light_power / float(pass_.paths);
+        if (session_.path_log) session_.path_log->photons_are_of(pass_.first_path, pass_.part_paths);
         map_->build(set);
         map_->gather(consumer(), queries_, 0, query_count_);
     }

@@ -27,6 +27,7 @@ KERNEL(bidirectional_pixels) {
         }
         if (slot != NONE) REPORT_UNFINISHED();
     }
+    PATH_LOG(log_film_sample(0u, radiance, own.w));
     uint lost;
     vec3 splatted = splat_sum(index, passes[0].quantum, lost);
     // A lost splat makes the whole sample one that is left out, and reported.

@@ -55,6 +55,7 @@ FN Spectrum connect_to_path(IN(Subpath) path, IN(Surface) s, IN(Vertex) v, uint 
         end.direction = path_vertex_direction(y);
         end.throughput = path_vertex_throughput(y);
         end.mis = path_vertex_sums(y);
+        PATH_LOG(log_connects(uint(path_vertex_depth(y)), chance));
         sum += connect_to_vertex(path, s, v, end);
     }
     return sum / chance;
@@ -77,6 +78,7 @@ KERNEL(camera_subpaths) {
     uvec2 local = film_pixel_of(index, w);
     uint light_path = film_pixel_number(local, w) % pass.paths;
     if (light_path < pass.first_path || light_path - pass.first_path >= pass.part_paths) return;
+    PATH_LOG(log_partner(light_path));
     uint at = local.y * w.width + local.x;
     CameraSample camera = camera_sample(w, local, 0u);
     Subpath path = camera_path_begin(camera.ray, pass.maxdepth);
@@ -89,7 +91,11 @@ KERNEL(camera_subpaths) {
     while (walk_next(path.walk, s)) {
         if (HAS(EFFECT_AREA_LIGHTS) && s.light != NONE && strategy_wanted(0, path.walk.depth + 2)) {
             Spectrum emitted = light_emission(s, -path.walk.ray.direction);
-            if (!is_black(emitted)) radiance += path.walk.throughput * emitted * weight_of_hit_light(path, s);
+            if (!is_black(emitted)) {
+                float weight = weight_of_hit_light(path, s);
+                radiance += path.walk.throughput * emitted * weight;
+                PATH_LOG(log_emission(s, path.walk.throughput * emitted, weight));
+            }
         }
         if (walk_crosses(path.walk, s)) continue;
         if (path.walk.depth == 0) camera_path_meets_first(path, s);
@@ -123,7 +129,11 @@ KERNEL(camera_subpaths) {
     }
     if (HAS(EFFECT_ENVIRONMENT) && path.walk.escaped && strategy_wanted(0, path.walk.depth + 2)) {
         Spectrum emitted = environment_radiance(path.walk.ray.direction);
-        if (!is_black(emitted)) radiance += path.walk.throughput * emitted * weight_of_environment(path);
+        if (!is_black(emitted)) {
+            float weight = weight_of_environment(path);
+            radiance += path.walk.throughput * emitted * weight;
+            PATH_LOG(log_environment(path.walk.ray.direction, path.walk.throughput * emitted, weight));
+        }
     }
     seen[at] = slot_of(radiance, camera.weight);
     if (pass.eta > 0.0f) last_merged[at] = last_kept;

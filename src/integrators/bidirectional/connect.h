@@ -16,6 +16,21 @@ struct LightEnd {
     MisSums mis;
 };
 
+// A connection in the path log, with log_partner and log_connects. `value`: without the weight.
+RARE_FN void log_connection(vec3 to, float distance, Spectrum value, float weight, uint seen) {
+    PathLogRecord r = log_record(LOG_CONNECTION);
+    r.s = log_now[0].partner_depth + 1u;
+    r.t = r.depth + 2u;
+    r.partner = log_now[0].partner;
+    r.position = to;
+    r.distance = distance;
+    r.value = rgb_of(value);
+    r.weight = weight;
+    r.factor = 1.0f / log_now[0].chance;
+    r.detail = seen;
+    log_write(r);
+}
+
 // Next-event estimation: strategy s = 1.
 FN Spectrum connect_to_light(IN(Subpath) path, IN(Surface) s, IN(Vertex) v, uint u_choice, uvec2 u) {
     LightSample light;
@@ -24,9 +39,15 @@ FN Spectrum connect_to_light(IN(Subpath) path, IN(Surface) s, IN(Vertex) v, uint
     float forward;
     float reverse;
     Spectrum f = bsdf_eval_pdfs(v.bsdf, v.wo, wi, TRANSPORT_RADIANCE, forward, reverse);
-    if (is_black(f)) return Spectrum(0.0f);
+    if (is_black(f)) {
+        PATH_LOG(log_light(light, f, f, 1.0f, forward, LOG_SEEN_UNSCATTERED));
+        return Spectrum(0.0f);
+    }
     Spectrum through = scene_transmittance(s, light.wi, light.distance, light.end, path.walk.medium);
-    if (is_black(through)) return Spectrum(0.0f);
+    if (is_black(through)) {
+        PATH_LOG(log_light(light, f, through, 1.0f, forward, LOG_SEEN_OCCLUDED));
+        return Spectrum(0.0f);
+    }
     // The density of emission over that of this strategy: both the cosine at the light and the squared distance cancel if it has a
     // surface.
     LightRecord record = lights[light.light];
@@ -42,6 +63,7 @@ FN Spectrum connect_to_light(IN(Subpath) path, IN(Surface) s, IN(Vertex) v, uint
     uint h = heuristic();
     float others = mis_end(path.mis, emitted * abs_dot(light.wi, s.ng), reverse, passes[0].eta, h);
     if (light.is_delta == 0u) others += mis_term(forward / light.pdf, h);
+    PATH_LOG(log_light(light, f * abs(wi.z), through, mis_weight(others), forward, LOG_SEEN_CLEARLY));
     return path.walk.throughput * f * light.radiance * through * (abs(wi.z) * mis_weight(others) / light.pdf);
 }
 
@@ -56,22 +78,34 @@ FN Spectrum connect_to_vertex(IN(Subpath) path, IN(Surface) s, IN(Vertex) v, IN(
     float forward;
     float reverse;
     Spectrum f = bsdf_eval_pdfs(v.bsdf, v.wo, wi, TRANSPORT_RADIANCE, forward, reverse);
-    if (is_black(f)) return Spectrum(0.0f);
+    if (is_black(f)) {
+        PATH_LOG(log_connection(y.surface.position, distance, f, 1.0f, LOG_SEEN_UNSCATTERED));
+        return Spectrum(0.0f);
+    }
     float forward_y;
     float reverse_y;
     Spectrum f_y = bsdf_eval_pdfs(y.vertex.bsdf, y.vertex.wo, to_local(y.vertex.frame, -w), TRANSPORT_IMPORTANCE,
                                   forward_y, reverse_y);
-    if (is_black(f_y)) return Spectrum(0.0f);
+    if (is_black(f_y)) {
+        PATH_LOG(log_connection(y.surface.position, distance, f_y, 1.0f, LOG_SEEN_UNSCATTERED));
+        return Spectrum(0.0f);
+    }
     connections_tried[0] += 1u;
     vec3 end = origin_beyond(y.surface.position, y.surface.way + (SHADOW_ROUNDING * distance) * y.surface.ng, -w);
     Spectrum through = scene_transmittance(s, w, distance, end, path.walk.medium);
-    if (is_black(through)) return Spectrum(0.0f);
+    if (is_black(through)) {
+        PATH_LOG(log_connection(y.surface.position, distance, through, 1.0f, LOG_SEEN_OCCLUDED));
+        return Spectrum(0.0f);
+    }
     connections_visible[0] += 1u;
     float inverse_d2 = 1.0f / mis_area(d2);
     uint h = heuristic();
     float others = mis_end(y.mis, forward * abs_dot(w, y.surface.ng) * inverse_d2, reverse_y, passes[0].eta, h) +
                    mis_end(path.mis, forward_y * abs_dot(w, s.ng) * inverse_d2, reverse, passes[0].eta, h);
     float cosine_y = importance_cosine(y.direction, y.surface, y.vertex, -w);
+    PATH_LOG(log_connection(y.surface.position, distance,
+                            path.walk.throughput * f * f_y * through * y.throughput * (abs(wi.z) * cosine_y / d2),
+                            mis_weight(others), LOG_SEEN_CLEARLY));
     return path.walk.throughput * f * f_y * through * y.throughput * (abs(wi.z) * cosine_y * mis_weight(others) / d2);
 }
 
@@ -86,6 +120,7 @@ FN Spectrum connect_to_lens(IN(Subpath) path, IN(Surface) s, IN(Vertex) v, IN(Ca
     if (is_black(through)) return Spectrum(0.0f);
     float from_camera = mis_area_density(c.importance * abs_dot(c.wi, s.ng)) / lens_samples();
     float others = mis_end(path.mis, from_camera, reverse, passes[0].eta, heuristic());
+    PATH_LOG(log_weighs(mis_weight(others)));
     float cosine = importance_cosine(path.walk.ray.direction, s, v, c.wi);
     return path.walk.throughput * f * through * (cosine * c.importance * mis_weight(others));
 }

@@ -63,11 +63,25 @@ FN bool lens_connect(IN(Surface) s, IN(Sampler) numbers, uint dimension, OUT(Len
     return true;
 }
 
+// A splat in the path log: `value` with the weight of log_weighs, which the pixel gets as `added`.
+RARE_FN void log_lens_splat(LensConnection c, Spectrum value, vec3 added) {
+    PathLogRecord r = log_record(LOG_SPLAT);
+    r.s = r.depth + 2u;
+    r.t = 1u;
+    r.distance = c.camera.distance;
+    r.direction = c.camera.wi;
+    r.weight = log_now[0].weight;
+    r.value = rgb_of(value) / r.weight;
+    r.factor = log_quotient(rgb_of(value), added);
+    log_write(r);
+}
+
 // Adds `value`, the share of one of `paths` light paths in the pixel's radiance, without the pixel filter. `brightness`: the number
 // of paths over that of pixels.
 FN void lens_splat(IN(LensConnection) c, Spectrum value, float paths, float brightness, float quantum,
                    IN(Sampler) numbers, uint dimension) {
     vec3 rgb = film_sensor(value * (brightness / paths)) * (c.weight / brightness);
+    PATH_LOG(log_lens_splat(c, value, rgb));
     uint key = hash_combine(hash_combine(numbers.key, numbers.index), dimension);
     splat_add(c.pixel, rgb, quantum, key);
 }

@@ -50,6 +50,7 @@ KERNEL(light_subpaths) {
     uint kept = 0u;
     Sampler numbers = light_path_numbers(index, pass.number, pass.seed, pass.sampler_kind);
     Emission start;
+    PATH_LOG(log_path(LOG_LIGHT_PATH, index, 0u));
     if (light_path_emits(numbers, start)) {
         Subpath path = light_path_begin(start, pass.maxdepth);
         Surface s;

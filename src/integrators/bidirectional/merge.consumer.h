@@ -3,6 +3,7 @@
 #include "core/kernel/scene.h"
 
 #include "core/kernel/gather.h"
+#include "core/kernel/path_log_merge.h"
 #include "integrators/bidirectional/path_vertex.h"
 
 BUFFER_RO(16, BidirectionalPass, passes)
@@ -42,8 +43,16 @@ FN MergePoint merge_point(IN(PathVertexRecord) x) {
     return p;
 }
 
+// The photon in the path log; `f`: the BSDF and the factors of the estimate, except for the weight and the disk's area.
+RARE_FN void log_merged_vertex(int depth, uint query, PhotonRecord photon, uint photon_depth, Spectrum f, float weight,
+                               float count) {
+    float radius = passes[0].radius;
+    Spectrum value = path_vertex_throughput(merged[query]) * f * photon_power(photon) / (PI * radius * radius);
+    log_merge(0u, uint(depth) - 1u, photon_depth + 1u, photon, value, weight, count);
+}
+
 // Photon and camera path both chose to stop at a mask, but the path has this vertex once: hence the opacity.
-FN vec4 merge(IN(MergePoint) p, IN(PhotonRecord) photon, float count) {
+FN vec4 merge(IN(MergePoint) p, uint query, IN(PhotonRecord) photon, float count) {
     BidirectionalPass pass = passes[0];
     vec4 sums = photon_sums[photon.place.w];
     vec3 incident = -photon_direction(photon);
@@ -58,6 +67,9 @@ FN vec4 merge(IN(MergePoint) p, IN(PhotonRecord) photon, float count) {
     y.d = sums.y;
     uint h = heuristic();
     float others = mis_merged_end(y, forward, pass.eta, h) + mis_merged_end(p.mis, reverse, pass.eta, h);
+    PATH_LOG(log_merged_vertex(p.depth, query, photon, uint(sums.z),
+                               f * (count * abs(wi.z) / (max(abs(cosine), LEAST_PHOTON_COSINE) * p.opacity)),
+                               mis_weight(others), count));
     float scale = count * abs(wi.z) * mis_weight(others) / (max(abs(cosine), LEAST_PHOTON_COSINE) * p.opacity);
     return slot_of(f * photon_power(photon) * scale, count);
 }
@@ -70,11 +82,11 @@ FN Gathered gather_begin(uint query) {
 }
 
 FN void gather_add(INOUT(Gathered) g, uint query, IN(PhotonRecord) photon, float distance_squared, float weight) {
-    g.sum += merge(g.point, photon, weight);
+    g.sum += merge(g.point, query, photon, weight);
 }
 
 FN vec4 gather_value(uint query, IN(PhotonRecord) photon, float distance_squared) {
-    return merge(merge_point(merged[query]), photon, 1.0f);
+    return merge(merge_point(merged[query]), query, photon, 1.0f);
 }
 
 FN Gathered gather_sums(uint query, vec4 sums) {

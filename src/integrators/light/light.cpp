@@ -61,6 +61,9 @@ class Light : public Integrator {
                     done += part;
                 }
                 device.run(*finish, scene, of_pixels, 0, pixels);
+                if (session.path_log)
+                    session.path_log->follow_light_paths(
+                        [&](uint32_t path) { device.run(*paths, scene, of_paths, path, 1); });
             }
             session.passes_finished(count);
         }

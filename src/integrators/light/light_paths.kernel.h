@@ -29,6 +29,7 @@ KERNEL(light_paths) {
     LightPass pass = passes[0];
     Sampler numbers = light_path_numbers(index, pass.number, pass.seed, pass.sampler_kind);
     Emission start;
+    PATH_LOG(log_path(LOG_LIGHT_PATH, index, 0u));
     if (!light_path_emits(numbers, start)) return;
     Walk walk = walk_begin(ray_of(start.origin, start.direction), start.medium, TRANSPORT_IMPORTANCE, pass.maxdepth);
     walk.throughput = start.power;

@@ -20,13 +20,19 @@ FN Spectrum directly_seen(IN(Ray) ray, INOUT(FirstHit) first) {
     Spectrum radiance = Spectrum(0.0f);
     Surface s;
     while (walk_next(walk, s)) {
-        radiance += walk.throughput * light_emission(s, -walk.ray.direction);
+        Spectrum emitted = walk.throughput * light_emission(s, -walk.ray.direction);
+        radiance += emitted;
+        PATH_LOG(log_emission(s, emitted, 1.0f));
         if (walk_crosses(walk, s)) continue;
         Vertex v = walk_vertex(walk, s);
         first = first_hit(s, bsdf_albedo(v.bsdf), distance_of(s.position, ray.origin));
         break;
     }
-    if (HAS(EFFECT_ENVIRONMENT) && walk.escaped) radiance += walk.throughput * environment_radiance(walk.ray.direction);
+    if (HAS(EFFECT_ENVIRONMENT) && walk.escaped) {
+        Spectrum emitted = walk.throughput * environment_radiance(walk.ray.direction);
+        radiance += emitted;
+        PATH_LOG(log_environment(walk.ray.direction, emitted, 1.0f));
+    }
     return radiance;
 }
 
@@ -36,7 +42,9 @@ KERNEL(light_pixels) {
     uint at = local.y * w.width + local.x;
     CameraSample camera = camera_sample(w, local, 0u);
     FirstHit first = no_first_hit();
-    vec3 seen = film_sensor(directly_seen(camera.ray, first)) * camera.weight;
+    Spectrum radiance = directly_seen(camera.ray, first);
+    PATH_LOG(log_film_sample(0u, radiance, camera.weight));
+    vec3 seen = film_sensor(radiance) * camera.weight;
     uint lost;
     vec3 splatted = splat_sum(at, passes[0].quantum, lost);
     FilmPixel pixel = film[at];
