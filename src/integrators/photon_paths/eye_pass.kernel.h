@@ -23,6 +23,7 @@ KERNEL(eye_pass) {
         CameraSample camera = camera_sample(w, local, i / branches);
         HitPointRecord hit = no_hit();
         vec4 query;
+        PATH_LOG(log_path(LOG_CAMERA_PATH, at, 0u));
         EyePath path = eye_path_begin(camera.ray, camera_medium());
         FirstHit first = no_first_hit();
         uint branch = EYE_BRANCH_CHANCE;

@@ -96,8 +96,11 @@ FN void follow_eye_path(IN(Sampler) numbers, bool from_camera, uint branch_asked
     Surface s;
     while (walk_next(path.walk, s)) {
         // No previous vertex sampled lights, so emission counts in full.
-        if (HAS(EFFECT_AREA_LIGHTS) && from_camera && s.light != NONE)
-            path.radiance += path.walk.throughput * light_emission(s, -path.walk.ray.direction);
+        if (HAS(EFFECT_AREA_LIGHTS) && from_camera && s.light != NONE) {
+            Spectrum emitted = path.walk.throughput * light_emission(s, -path.walk.ray.direction);
+            path.radiance += emitted;
+            PATH_LOG(log_emission(s, emitted, 1.0f));
+        }
         path.travelled += s.distance;
         if (walk_crosses(path.walk, s)) continue;
         Vertex v = walk_vertex(path.walk, s);
@@ -112,10 +115,14 @@ FN void follow_eye_path(IN(Sampler) numbers, bool from_camera, uint branch_asked
         if (action == VISIBLE_SPLIT && branch == EYE_BRANCH_CHANCE) {
             action = sample_1d_at(numbers, dimension + EYE_BRANCH) < 0.5f ? VISIBLE_GATHER : VISIBLE_FOLLOW;
             path.walk.throughput = 2.0f * path.walk.throughput;
+            PATH_LOG(log_carries(path.walk.throughput));
             lobes = EYE_LOBES_SPECULAR;  // the other lobes are gathered, with probability 1/2
         } else if (action == VISIBLE_SPLIT) {
             action = branch == EYE_BRANCH_GATHERS ? VISIBLE_GATHER : VISIBLE_FOLLOW;
-            if (action == VISIBLE_FOLLOW) path.radiance = Spectrum(0.0f);  // counted by the other branch
+            if (action == VISIBLE_FOLLOW) {  // counted by the other branch
+                path.radiance = Spectrum(0.0f);
+                PATH_LOG(log_discards());
+            }
             lobes = EYE_LOBES_COAT;
             branch = EYE_BRANCH_CHANCE;
         }
@@ -131,9 +138,15 @@ FN void follow_eye_path(IN(Sampler) numbers, bool from_camera, uint branch_asked
         if (action == VISIBLE_GATHER) break;
         if (!eye_path_scatters(s, v, numbers, lobes, path.walk)) break;
     }
-    if (HAS(EFFECT_ENVIRONMENT) && from_camera && path.walk.escaped)
-        path.radiance += path.walk.throughput * environment_radiance(path.walk.ray.direction);
-    if (branch == EYE_BRANCH_FOLLOWS) path.radiance = Spectrum(0.0f);  // no coat: the other branch counts all
+    if (HAS(EFFECT_ENVIRONMENT) && from_camera && path.walk.escaped) {
+        Spectrum emitted = path.walk.throughput * environment_radiance(path.walk.ray.direction);
+        path.radiance += emitted;
+        PATH_LOG(log_environment(path.walk.ray.direction, emitted, 1.0f));
+    }
+    if (branch == EYE_BRANCH_FOLLOWS) {  // no coat: the other branch counts all
+        path.radiance = Spectrum(0.0f);
+        PATH_LOG(log_discards());
+    }
     hit.radiance = slot_of(path.radiance, hit.radiance.w);
 }
 

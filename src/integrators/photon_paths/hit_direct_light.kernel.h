@@ -36,6 +36,9 @@ KERNEL(hit_direct_light) {
         v.bsdf.walk = hash_combine(numbers.key, numbers.index);
         uint u_light = 0u;
         if (light_choice_needs_number()) u_light = sample_bits_1d_at(numbers, 0u);
+        PATH_LOG(log_path(LOG_CAMERA_PATH, at, LOG_ORDER_LATER));
+        PATH_LOG(log_at(hit_number(hit) - 1u));
+        PATH_LOG(log_carries(spectrum_of(hit.throughput)));
         Spectrum arriving = direct_light(s, v, hit_medium(hit), u_light, sample_bits_2d_at(numbers, 1u), false);
         Spectrum radiance = spectrum_of(ways[at]) + spectrum_of(hit.throughput) * arriving;
         hits[at].radiance = slot_of(radiance, hit.radiance.w);

@@ -2,6 +2,7 @@
 #include "core/kernel/scene.h"
 
 #include "core/kernel/gather.h"
+#include "core/kernel/path_log_merge.h"
 #include "integrators/photon_paths/hit_point.h"
 
 BUFFER_RO(16, HitPointRecord, hits)
@@ -15,6 +16,15 @@ struct Gathered {
     Spectrum bias;  // part of the sum that is due to the radius: see gather_add
 };
 
+// A photon in the path log; `reflected`: hit_point_reflects.
+RARE_FN void log_gathered(uint query, PhotonRecord photon, vec4 reflected) {
+    if (reflected.w == 0.0f) return;  // on the other side
+    HitPointRecord hit = hits[query];
+    float radius = queries[query].w;
+    Spectrum share = spectrum_of(hit.throughput) * (1.0f / (PI * max(radius * radius, SMALLEST_RADIUS_SQUARED)));
+    log_merge(query, hit_number(hit) - 1u, NONE, photon, share * spectrum_of(reflected), 1.0f, reflected.w);
+}
+
 FN Gathered gather_begin(uint query) {
     Gathered g;
     g.point = hit_point(hits[query]);
@@ -27,6 +37,7 @@ FN Gathered gather_begin(uint query) {
 
 FN void gather_add(INOUT(Gathered) g, uint query, IN(PhotonRecord) photon, float distance_squared, float weight) {
     vec4 value = hit_point_reflects(g.point, photon, weight);
+    PATH_LOG(log_gathered(query, photon, value));
     g.sum += value;
     // A disk of radius r overestimates by r^2/8 times the Laplacian (Hachisuka et al. 2010, equation 6, with k2 = 1/4).
     // That is estimated by the Laplacian of the kernel 4 (1 - t)^3 / (pi r^2), t = d^2 / r^2. Relative to the disk's
@@ -37,7 +48,9 @@ FN void gather_add(INOUT(Gathered) g, uint query, IN(PhotonRecord) photon, float
 
 // For structures over the hit points: the surface is recomputed for each photon, and the bias is not estimated.
 FN vec4 gather_value(uint query, IN(PhotonRecord) photon, float distance_squared) {
-    return hit_point_reflects(hit_point(hits[query]), photon, 1.0f);
+    vec4 value = hit_point_reflects(hit_point(hits[query]), photon, 1.0f);
+    PATH_LOG(log_gathered(query, photon, value));
+    return value;
 }
 
 FN Gathered gather_sums(uint query, vec4 sums) {

@@ -48,6 +48,9 @@ KERNEL(hit_resolve) {
             statistics[at] = shrink(statistics[at], sum.w);
         }
         if ((i + 1u) % branches != 0u) continue;  // the branches of a path are one sample
+        if (LOGS_PATHS) {
+            for (uint b = 0u; b < branches; ++b) log_film_sample(at - b * pixels, radiance, hit_filter_weight(hit));
+        }
         if (film_add(pixel, film_sensor(radiance), hit_filter_weight(hit), passes[0].number))
             film_add_bias(film_bias[index], rgb_of(bias) * scene[0].camera.imaging_ratio, hit_filter_weight(hit));
         radiance = Spectrum(0.0f);

@@ -32,6 +32,7 @@ FN void keep_photon(vec3 position, vec3 direction, Spectrum power, uint key) {
 KERNEL(photon_pass) {
     PhotonPass pass = passes[0];
     uint path = pass.first_path + index;
+    PATH_LOG(log_path(LOG_LIGHT_PATH, path, 0u));
     // The paths of a pass are a stratified set: the path is the sampler's sample, and the pass its pixel.
     Sampler numbers = sampler_begin(pass.number, path, pass.seed ^ PHOTON_STREAM, pass.sampler_kind);
     uint u_choice = 0u;

@@ -136,6 +136,15 @@ class ProgressivePhotonMapping {
         // Without a hit point that gathers, no photons are needed.
         if (box[kernel::HIT_LARGEST_RADIUS] > 0) photon_pass();
         resolve(pass);
+        if (session_.path_log) session_.path_log->follow_light_paths([&](uint32_t path) { trace_again(path); });
+    }
+
+    // One photon path, for the path log: the pass is finished.
+    void trace_again(uint32_t path) {
+        pass_.first_path = path;
+        pass_.part_paths = 1;
+        pass_buffer_->upload(&pass_, sizeof pass_);
+        run_photons(1);
     }
 
     void follow_eye_paths(uint64_t pass) {
@@ -225,6 +234,7 @@ class ProgressivePhotonMapping {
         set.seed = session_.seed;
         set.pass = pass_.number * 0x9e3779b9u + pass_.first_path;  // each part has its own grid
         set.mean_power = session_.scene.record.light_power / float(paths_);
+        if (session_.path_log) session_.path_log->photons_are_of(pass_.first_path, pass_.part_paths);
         map_->build(set);
         map_->gather(consumer_, queries_, 0, points_ * pixels_);
     }
