@@ -18,6 +18,36 @@ BUFFER_RO(9, uint, depth_starts)  // the first seed of each number of scattering
 #include "core/kernel/splat.h"
 #include "integrators/mlt/mlt_path.h"
 
+// A chain's path in the log, which counts `times`: the probability of being the chain's next one, summed over mutations.
+RARE_FN void log_chain_splat(vec3 color, float times) {
+    PathLogRecord r = log_record(LOG_SPLAT);
+    r.value = color;
+    r.factor = times;
+    r.extra = times;
+    log_write(r);
+}
+
+RARE_FN void log_mutation(uint number, int depth, float luminance, float chance) {
+    PathLogRecord r = log_record(LOG_MUTATION);
+    r.depth = number;
+    r.s = uint(mlt_vertices_from_light(depth));
+    r.t = uint(depth) + 2u - r.s;
+    r.detail = primary_large[0];
+    r.pdf = luminance;
+    r.extra = chance;
+    log_write(r);
+}
+
+// Whether the path may be splatted to the window, which is one pixel in a replay.
+FN bool mlt_reaches_window(IN(MltSample) path) {
+    if (!(path.luminance > 0.0f)) return false;
+    FilmWindow w = window[0];
+    float margin_x = path.one_pixel != 0u ? 0.0f : scene[0].camera.filter_radius_x;
+    float margin_y = path.one_pixel != 0u ? 0.0f : scene[0].camera.filter_radius_y;
+    return path.raster.x >= float(w.x) - margin_x && path.raster.x < float(w.x + w.width) + margin_x &&
+           path.raster.y >= float(w.y) - margin_y && path.raster.y < float(w.y + w.height) + margin_y;
+}
+
 // Adds a path to the picture.
 FN void mlt_splat(vec3 color, vec2 raster, bool one_pixel, float weight, uint key) {
     if (!(weight > 0.0f)) return;
@@ -31,6 +61,7 @@ FN void mlt_splat(vec3 color, vec2 raster, bool one_pixel, float weight, uint ke
     int x = pixel.x - int(w.x);
     int y = pixel.y - int(w.y);
     if (x < 0 || y < 0 || x >= int(w.width) || y >= int(w.height)) return;
+    PATH_LOG(log_chain_splat(color * filter_weight, weight));
     splat_add(uint(y) * w.width + uint(x), color * (weight * filter_weight), mlt[0].quantum, key);
 }
 FN void mlt_splat_state(IN(MltState) state, uint key) {
@@ -69,7 +100,13 @@ KERNEL(mlt_chains) {
     primary_chain[0] = index;
     uint end = mutates ? pass.iterations : 1u;
     uint i = 0u;
+    bool follows = false;  // for the path log: a path that reaches the pixel is made twice, and logged the second time
     for (; i < end; ++i) {
+        uint number = mutates ? pass.first + i + 1u : 0u;
+        PATH_LOG(log_path(LOG_CHAIN, index, number << 12u));
+        if (LOGS_PATHS) {
+            if (!follows) log_pauses();
+        }
         uint key = hash_combine(hash32(pass.seed), seed);  // of a seed
         float u_accept = 0.0f;
         primary_large[0] = 1u;
@@ -81,12 +118,21 @@ KERNEL(mlt_chains) {
         }
         primary_key[0] = key;
         MltSample proposed = mlt_sample(int(state.kind & 0xffffu));
+        if (LOGS_PATHS) {
+            follows = !follows && pass.mode != MLT_SEEDS && mlt_reaches_window(proposed);
+            if (follows) {
+                large_steps -= mutates ? primary_large[0] : 0u;
+                i -= 1u;
+                continue;
+            }
+        }
         float acceptance = 1.0f;
         if (mutates) {
             // A proposal that is black or not finite is rejected, and the current path counts.
             acceptance = proposed.luminance > 0.0f ? min(proposed.luminance / state.luminance, 1.0f) : 0.0f;
             state.weight += 1.0f - acceptance;
         }
+        PATH_LOG(log_mutation(number, int(state.kind & 0xffffu), proposed.luminance, acceptance));
         if (u_accept < acceptance) {
             if (mutates) {
                 mlt_splat_state(state, key);

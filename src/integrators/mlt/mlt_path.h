@@ -44,7 +44,11 @@ FN bool follow_subpath(INOUT(Subpath) path, IN(Emission) start, int vertices, ui
         bool last = path.walk.depth + 1 == vertices;
         if (HAS(EFFECT_AREA_LIGHTS) && last && lights && s.light != NONE) {
             Spectrum emitted = light_emission(s, -path.walk.ray.direction);
-            if (!is_black(emitted)) radiance += path.walk.throughput * emitted * weight_of_hit_light(path, s);
+            if (!is_black(emitted)) {
+                float weight = weight_of_hit_light(path, s);
+                radiance += path.walk.throughput * emitted * weight;
+                PATH_LOG(log_emission(s, path.walk.throughput * emitted, weight));
+            }
         }
         if (walk_crosses(path.walk, s)) continue;
         if (last && lights) return false;
@@ -66,9 +70,19 @@ FN bool follow_subpath(INOUT(Subpath) path, IN(Emission) start, int vertices, ui
     }
     if (HAS(EFFECT_ENVIRONMENT) && lights && path.walk.escaped && path.walk.depth + 1 == vertices) {
         Spectrum emitted = environment_radiance(path.walk.ray.direction);
-        if (!is_black(emitted)) radiance += path.walk.throughput * emitted * weight_of_environment(path);
+        if (!is_black(emitted)) {
+            float weight = weight_of_environment(path);
+            radiance += path.walk.throughput * emitted * weight;
+            PATH_LOG(log_environment(path.walk.ray.direction, path.walk.throughput * emitted, weight));
+        }
     }
     return false;
+}
+
+// Vertices from the light, of a path with that many scattering ones.
+FN int mlt_vertices_from_light(int depth) {
+    int strategies = depth + 2;
+    return min(int(primary(MLT_STRATEGY) * float(strategies)), strategies - 1);
 }
 
 FN MltSample mlt_sample(int depth) {
@@ -79,7 +93,7 @@ FN MltSample mlt_sample(int depth) {
     sample_.one_pixel = 1u;
     float weight = 1.0f;
     int strategies = depth + 2;
-    int from_light = min(int(primary(MLT_STRATEGY) * float(strategies)), strategies - 1);
+    int from_light = mlt_vertices_from_light(depth);
     int from_camera = depth + 2 - from_light;
 
     Spectrum value = Spectrum(0.0f);
@@ -148,6 +162,7 @@ FN MltSample mlt_sample(int depth) {
             connect_to_light(camera_path, s, v, primary_bits(MLT_CONNECTION), primary_bits_2d(MLT_CONNECTION + 1u)) *
             mlt_pixels();
     } else {
+        PATH_LOG(log_connects(uint(from_light) - 1u, 1.0f));
         value = connect_to_vertex(camera_path, s, v, y) * mlt_pixels();
     }
     // The sensor's limit is one of radiance.

@@ -24,11 +24,14 @@ KERNEL(mlt_pixels) {
     for (; i < pass.samples; ++i) {
         CameraSample camera = camera_sample(w, local, i);
         FirstHit first = no_first_hit();
+        PATH_LOG(log_path(LOG_CAMERA_PATH, i, 0u));
         Spectrum radiance = radiance_along(camera.ray, camera.numbers, first);
+        PATH_LOG(log_film_sample(i, radiance, camera.weight / float(pass.samples)));
         direct += film_sensor(radiance) * camera.weight;
         if (i == 0u) film_add_first_hit(pixel, first);
     }
     if (i != pass.samples) REPORT_UNFINISHED();
+    PATH_LOG(log_sample(LOG_CHAIN, 0u, Spectrum(0.0f), vec3(0.0f), pass.brightness));
     uint lost;
     vec3 splatted = splat_sum(at, pass.quantum, lost) * pass.brightness;
     vec3 value = lost == 0u ? direct / float(pass.samples) + splatted : vec3(uintBitsToFloat(0x7f800000u));
