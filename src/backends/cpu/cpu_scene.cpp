@@ -23,6 +23,8 @@ CpuScene::~CpuScene() = default;
 void CpuScene::bind(const std::vector<SceneBuffer>& buffers) {
     // Kernels read these arrays in place; none writes to the scene.
     for (const SceneBuffer& buffer : buffers) buffers_[buffer.binding] = const_cast<void*>(buffer.data);
+    record_ = *static_cast<const kernel::SceneRecord*>(buffers_[kernel::BINDING_RECORD]);
+    buffers_[kernel::BINDING_RECORD] = &record_;
 }
 
 }  // namespace lampyris

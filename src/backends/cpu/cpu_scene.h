@@ -20,6 +20,7 @@ class CpuScene final : public DeviceScene {
     static constexpr size_t kBufferCount = kernel::SCENE_BINDINGS;
     CpuScene(const Scene& scene, CpuTracerKind tracer);
     ~CpuScene() override;
+    void set_camera(const kernel::CameraRecord& camera) override { record_.camera = camera; }
     void* const* buffers() const { return buffers_.data(); }
     const CpuTracer& tracer() const { return tracer_; }
     size_t memory_bytes() const { return memory_; }
@@ -29,6 +30,7 @@ class CpuScene final : public DeviceScene {
     void bind(const std::vector<SceneBuffer>& buffers);
 
     std::array<void*, kBufferCount> buffers_{};  // by binding
+    kernel::SceneRecord record_{};               // what kernels read, instead of the scene's or the BVH's
     std::unique_ptr<EmbreeScene> embree_;        // of backend cpu
     std::unique_ptr<Bvh2Scene> bvh_;             // of backend cpu-bvh2
     CpuTracer tracer_;

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <cstddef>
+
 namespace lampyris::vulkan {
 
 VulkanScene::VulkanScene(std::shared_ptr<Context> context, std::shared_ptr<MemoryAccount> account, const Scene& scene,
@@ -14,6 +16,7 @@ VulkanScene::VulkanScene(std::shared_ptr<Context> context, std::shared_ptr<Memor
             context, account, from.bytes, fmt::format("the scene's {}", from.name), BufferOptions{.staged = staged});
         if (from.bytes > 0) buffer->upload(from.data, from.bytes, 0);
         bindings_.buffers[from.binding] = buffer->binding();
+        if (from.binding == kernel::BINDING_RECORD) record_ = buffer.get();
         buffers_.push_back(std::move(buffer));
     };
     if (ray_query) {
@@ -32,5 +35,9 @@ VulkanScene::VulkanScene(std::shared_ptr<Context> context, std::shared_ptr<Memor
 }
 
 VulkanScene::~VulkanScene() = default;
+
+void VulkanScene::set_camera(const kernel::CameraRecord& camera) {
+    record_->upload(&camera, sizeof camera, offsetof(kernel::SceneRecord, camera));
+}
 
 }  // namespace lampyris::vulkan

@@ -17,10 +17,12 @@ class VulkanScene final : public DeviceScene {
     VulkanScene(std::shared_ptr<Context> context, std::shared_ptr<MemoryAccount> account, const Scene& scene,
                 bool staged, bool ray_query, const VulkanBuffer& unfinished);
     ~VulkanScene() override;
+    void set_camera(const kernel::CameraRecord& camera) override;
     const SceneBindings& bindings() const { return bindings_; }
 
  private:
     std::vector<std::unique_ptr<VulkanBuffer>> buffers_;
+    VulkanBuffer* record_ = nullptr;  // one of them
     std::unique_ptr<AccelerationStructures> structures_;
     SceneBindings bindings_;
 };

@@ -19,6 +19,9 @@
 namespace lampyris {
 
 struct Scene;
+namespace kernel {
+struct CameraRecord;
+}
 
 // Memory that kernels access. The host exchanges data with it by upload and download; if the host can access the device's
 // memory, both are plain copies.
@@ -36,6 +39,8 @@ using BufferHandle = std::shared_ptr<Buffer>;
 class DeviceScene {
  public:
     virtual ~DeviceScene() = default;
+    // Replaces the camera that kernels see from the next run on, by one of the same kind: another resolution or place.
+    virtual void set_camera(const kernel::CameraRecord& camera) = 0;
 };
 using DeviceSceneHandle = std::shared_ptr<DeviceScene>;
 
