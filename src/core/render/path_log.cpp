@@ -107,6 +107,8 @@ void PathLogger::follow_light_paths(const std::function<void(uint32_t)>& run) {
 
 void PathLogger::stop() { set_mode(kernel::LOG_MODE_OFF); }
 
+void PathLogger::go_on() { set_mode(kernel::LOG_MODE_PIXEL); }
+
 PathLog PathLogger::log() const {
     const std::vector<PathLogRecord> found = records();
     const PathFactors factors(found);

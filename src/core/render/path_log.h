@@ -39,6 +39,7 @@ class PathLogger {
     // Logs the vertices of the light paths that contribute to the pixel: `run` traces one path again.
     void follow_light_paths(const std::function<void(uint32_t path)>& run);
     void stop();  // kernels that run from now on log nothing
+    void go_on();
 
     PathLog log() const;
 

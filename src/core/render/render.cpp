@@ -207,6 +207,7 @@ RenderOutcome Rendering::State::run(uint32_t seed) {
     session.start_at(request.replay ? uint64_t((*request.replay)[2]) : request.first_pass);
     std::optional<PathLogger> path_log;
     if (request.replay) session.path_log = &path_log.emplace(*device);
+    session.on_note = [&](const std::string& text) { observer.note(text); };
     RenderOutcome outcome;
     session.on_progress = [&](const RenderProgress& progress, const Film& current) {
         ConvergencePoint point{progress.wall_s,
@@ -268,6 +269,7 @@ RunRecord Rendering::State::record_of(const RenderSession& session) const {
     run.ended = session.ended();
     run.phases = session.phases();
     run.counts = session.counts();
+    run.choices = session.choices();
     run.device_statistics = device->statistics();
     run.parse_s = loaded.parse_s;
     run.scene_s = scene_s;

@@ -13,6 +13,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lampyris {
@@ -98,6 +99,15 @@ class RenderSession {
     void set_count(const std::string& name, double value) { counts_[name] = value; }
     const std::map<std::string, double>& counts() const { return counts_; }
 
+    // What the integrator chose for this scene where its parameters leave it open ("light_paths", "0"), for the statistics; and a
+    // line that says so.
+    void add_choice(const std::string& name, const std::string& value) { choices_.emplace_back(name, value); }
+    const std::vector<std::pair<std::string, std::string>>& choices() const { return choices_; }
+    std::function<void(const std::string&)> on_note;
+
+    // Work before the first pass that counts as rendering.
+    void add_preparation(double seconds) { progress_.wall_s += seconds; }
+
     // Seconds of a phase ("eye_pass", "photon_tracing", ...).
     void add_phase(const std::string& name, double seconds) { phases_[name] += seconds; }
     const std::map<std::string, double>& phases() const { return phases_; }
@@ -113,6 +123,7 @@ class RenderSession {
     RenderProgress progress_;
     std::vector<ErrorPoint> history_;  // one point per evaluation of the film
     std::map<std::string, double> phases_, counts_;
+    std::vector<std::pair<std::string, std::string>> choices_;
     Clock::time_point slice_start_{};
     uint64_t first_pass_ = 0;
     double seconds_per_pass_ = 0.0;

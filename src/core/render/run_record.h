@@ -49,6 +49,7 @@ struct RunRecord {
     double total_s = 0.0;  // including reading the scene and loading it onto the device
     double parse_s = 0.0, scene_s = 0.0;
     std::map<std::string, double> phases, counts;
+    std::vector<std::pair<std::string, std::string>> choices;  // of the integrator, where its parameters leave it open
     DeviceStatistics device_statistics;
     FilmSummary film;
     std::vector<ConvergencePoint> convergence;

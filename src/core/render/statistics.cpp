@@ -125,6 +125,7 @@ nlohmann::ordered_json statistics_json(const RunRecord& run) {
         {"photons_lost", run.photons.lost},
         {"photon_map_bytes", run.photons.map_bytes},
         {"counts", counts},
+        {"chosen", run.choices.empty() ? Json(nullptr) : parameters_json(run.choices)},
         {"peak_memory_bytes", peak_resident_bytes()},
         {"device_memory_bytes", run.device_statistics.peak_memory_bytes},
         {"estimated_error", number(run.progress.estimated_error)},

@@ -2,6 +2,7 @@
 #include "core/render/integrator.h"
 #include "integrators/bdpt/bdpt_params.h"
 #include "integrators/bidirectional/bidirectional.h"
+#include "integrators/bidirectional/pilot.h"
 
 #include <fmt/format.h>
 
@@ -22,14 +23,17 @@ class Bdpt : public Integrator {
                 "error: weights=none shows one strategy as if it were alone: choose it by s and t, its vertices from "
                 "the light "
                 "and from the camera");
-        const BidirectionalOptions options{.name = "bdpt",
-                                           .maxdepth = params.maxdepth,
-                                           .rrdepth = params.rrdepth,
-                                           .lightpaths = params.lightpaths,
-                                           .connections = params.connections,
-                                           .weights = params.weights,
-                                           .only_light = params.s,
-                                           .only_camera = params.t};
+        if (params.counts != 0 && (params.s >= 0 || params.t >= 0))
+            throw InputError("error: counts=auto chooses among strategies, and s and t name one: give either");
+        BidirectionalOptions options{.name = "bdpt",
+                                     .maxdepth = params.maxdepth,
+                                     .rrdepth = params.rrdepth,
+                                     .lightpaths = params.lightpaths,
+                                     .connections = params.connections,
+                                     .weights = params.weights,
+                                     .only_light = params.s,
+                                     .only_camera = params.t};
+        if (params.counts != 0) options = choose_counts(session, options);
         render_bidirectional(session, options);
         if (params.strategies != 0) render_strategies(session, options, params.maxdepth);
     }

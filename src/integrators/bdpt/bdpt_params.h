@@ -8,6 +8,7 @@
 #define BDPT_PARAMS(P) \
     SUBPATH_PARAMS(P) \
     CONNECTION_PARAMS(P) \
+    COUNTS_PARAMS(P) \
     P(uint, weights, 0, 0, 2, \
       "{balance|power|none} heuristic that weighs the strategies; none shows the one chosen by the next two as if it " \
       "were alone") \

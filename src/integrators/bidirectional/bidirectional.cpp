@@ -45,13 +45,17 @@ class BidirectionalRender {
           camera_paths_(device_.compile(kCameraPaths, session.scene.effects.mask())),
           finish_(device_.compile(kPixels, session.scene.effects.mask())) {
         describe_pass();
-        part_ = std::min(pass_.paths, kPart);
+        part_ = std::clamp(pass_.paths, 1u, kPart);
         numbers_ = uint32_t(std::clamp(options.maxdepth, 1, 8));
         splats_ = device_.create_buffer(splat_bytes(pixels_, options.name), "splats");
         seen_ = device_.create_buffer(size_t(pixels_) * sizeof(glm::vec4), "radiance of camera paths");
+        connected_ = device_.create_buffer(options.shares ? size_t(pixels_) * 4 : 4, "radiance by connections");
+        shares_ = device_.create_buffer((options.shares ? pixels_ : 1) * sizeof(glm::vec4), "radiance by strategies");
+        shares_->fill_zero();
         last_ = device_.create_buffer(size_t(part_) * 4, "last vertices of light paths");
         last_merged_ = device_.create_buffer(merges_ ? size_t(pixels_) * 4 : 4, "last merged vertices of pixels");
-        make_vertices(options.strategies == kernel::STRATEGIES_ALL ? part_ * kVerticesPerPath : 1);
+        make_vertices(
+            options.strategies == kernel::STRATEGIES_ALL && options.connections != 0 ? part_ * kVerticesPerPath : 1);
         make_photons(merges_ ? part_ * kVerticesPerPath : 1);
         make_sums(merges_ ? part_ * numbers_ : 1);
         make_queries(merges_ ? pixels_ * kVerticesPerPath : 1);
@@ -67,6 +71,9 @@ class BidirectionalRender {
             session_.passes_finished(count);
         }
         if (merges_) finish_statistics();
+        if (!options_.shares) return;
+        options_.shares->resize(pixels_);
+        shares_->download(options_.shares->data(), pixels_ * sizeof(glm::vec4));
     }
 
  private:
@@ -75,7 +82,7 @@ class BidirectionalRender {
         const uint32_t full = scene.width() * scene.height();
         pass_.seed = session_.seed;
         pass_.sampler_kind = session_.sampler;
-        pass_.paths = options_.lightpaths > 0 ? uint32_t(options_.lightpaths) : full;
+        pass_.paths = light_path_count(options_, scene);
         pass_.maxdepth = options_.maxdepth;
         pass_.rrdepth = options_.rrdepth;
         pass_.connections = options_.connections;
@@ -86,6 +93,7 @@ class BidirectionalRender {
         pass_.quantum = splat_quantum(scene);
         pass_.brightness = float(double(pass_.paths) / double(full));
         pass_.film_density = film_density(scene);
+        pass_.shares = options_.shares ? 1 : 0;
     }
 
     void open_map() {
@@ -147,7 +155,7 @@ class BidirectionalRender {
         device_.run(*light_paths_, session_.device_scene.get(), buffers, first, count);
     }
     void run_camera_paths(uint32_t count) {
-        const std::array<NamedBuffer, 10> buffers{{{"window", window_},
+        const std::array<NamedBuffer, 11> buffers{{{"window", window_},
                                                    {"passes", passes_},
                                                    {"film", session_.film.buffer()},
                                                    {"counters", counters_},
@@ -156,18 +164,21 @@ class BidirectionalRender {
                                                    {"seen", seen_},
                                                    {"merged", merged_},
                                                    {"queries", queries_},
-                                                   {"last_merged", last_merged_}}};
+                                                   {"last_merged", last_merged_},
+                                                   {"connected", connected_}}};
         device_.run(*camera_paths_, session_.device_scene.get(), buffers, 0, count);
     }
     void run_finish(uint32_t count) {
-        const std::array<NamedBuffer, 8> buffers{{{"window", window_},
-                                                  {"passes", passes_},
-                                                  {"film", session_.film.buffer()},
-                                                  {"splats", splats_},
-                                                  {"seen", seen_},
-                                                  {"merged", merged_},
-                                                  {"last_merged", last_merged_},
-                                                  {"gathered", gathered_}}};
+        const std::array<NamedBuffer, 10> buffers{{{"window", window_},
+                                                   {"passes", passes_},
+                                                   {"film", session_.film.buffer()},
+                                                   {"splats", splats_},
+                                                   {"seen", seen_},
+                                                   {"merged", merged_},
+                                                   {"last_merged", last_merged_},
+                                                   {"gathered", gathered_},
+                                                   {"connected", connected_},
+                                                   {"shares", shares_}}};
         device_.run(*finish_, session_.device_scene.get(), buffers, 0, count);
     }
     void upload_pass() { passes_->upload(&pass_, sizeof pass_); }
@@ -198,6 +209,7 @@ class BidirectionalRender {
             trace_camera_paths();
             first += count;
         }
+        if (pass_.paths == 0) trace_camera_paths();
         if (merges_) merge();
         run_finish(pixels_);
         if (session_.path_log) session_.path_log->follow_light_paths([&](uint32_t path) { trace_again(path); });
@@ -363,11 +375,17 @@ class BidirectionalRender {
     BufferHandle window_ = device_.create_buffer(sizeof(kernel::FilmWindow), "film window");
     BufferHandle passes_ = device_.create_buffer(sizeof(kernel::BidirectionalPass), "pass");
     BufferHandle counters_ = device_.create_buffer(sizeof(Counters), "counters");
-    BufferHandle splats_, seen_, last_, last_merged_, vertices_, photons_, sums_, merged_, queries_, gathered_;
+    BufferHandle splats_, seen_, connected_, shares_, last_, last_merged_, vertices_, photons_, sums_, merged_,
+        queries_, gathered_;
     std::unique_ptr<PhotonMap> map_;
 };
 
 }  // namespace
+
+uint32_t light_path_count(const BidirectionalOptions& options, const Scene& scene) {
+    if (!options.light_paths) return 0;
+    return options.lightpaths > 0 ? uint32_t(options.lightpaths) : scene.width() * scene.height();
+}
 
 void render_bidirectional(RenderSession& session, const BidirectionalOptions& options) {
     BidirectionalRender(session, options).render();

@@ -5,6 +5,7 @@
 #include "integrators/bidirectional/bidirectional_host.h"
 
 #include <cstdint>
+#include <vector>
 
 namespace lampyris {
 
@@ -13,6 +14,7 @@ struct BidirectionalOptions {
     int maxdepth = 5;
     int rrdepth = 3;
     int lightpaths = -1;                    // in each pass; -1: as many as the picture has pixels
+    bool light_paths = true;                // false: none, whatever `lightpaths` says
     int connections = -1;                   // of a camera vertex with a light path; -1: all
     uint32_t weights = 0;                   // kernel::WEIGHTS_*
     int only_light = -1, only_camera = -1;  // strategy, as counts of vertices; -1: all
@@ -20,7 +22,13 @@ struct BidirectionalOptions {
     // Merging: the radius of the first pass in scene units, or 0 for `radius_share` of the scene's radius; negative: none.
     double radius = -1.0, radius_share = 0.0;
     double alpha = 0.75;  // of its decrease (Knaus and Zwicker 2011)
+    // Receives for each pixel, summed over the passes, in the mean of the channels: what camera paths contribute alone (s = 0 and 1), by
+    // connections, what splats do, and what merging does.
+    std::vector<glm::vec4>* shares = nullptr;
 };
+
+// The number of light paths in each pass of a scene's picture.
+uint32_t light_path_count(const BidirectionalOptions& options, const Scene& scene);
 
 // Renders until the session's budget is spent. Throws InputError, MachineError.
 void render_bidirectional(RenderSession& session, const BidirectionalOptions& options);

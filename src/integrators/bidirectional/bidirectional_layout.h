@@ -17,7 +17,7 @@ struct BidirectionalPass {
     uint number;
     uint seed;
     uint sampler_kind;  // SAMPLER_*
-    uint paths;         // from lights, in the pass
+    uint paths;         // from lights, in the pass; 0: no strategy with vertices from lights but next-event estimation
     uint first_path;
     uint part_paths;
     uint capacity;  // light vertices that can be stored
@@ -38,6 +38,7 @@ struct BidirectionalPass {
     uint sums_capacity;  // of photon_sums
     uint query_capacity;
     uint features;  // 1: camera paths add the features of their first hits to the film; 0: not again
+    uint shares;    // 1: `shares` adds up what each class of strategies contributes
 };
 
 CONST uint STRATEGIES_ALL = 0u;

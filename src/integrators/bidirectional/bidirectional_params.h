@@ -14,6 +14,11 @@
       "vertices of a light path to which each vertex of a camera path is connected, chosen at random; -1: all; 0: " \
       "none, and weights know it")
 
+#define COUNTS_PARAMS(P)                                                                                             \
+    P(uint, counts, 0, 0, 1,                                                                                         \
+      "{fixed|auto} auto: of light paths, connections and merging, a pilot rendering chooses what suits the scene; " \
+      "`lightpaths` and `connections` stay if they are not at their defaults")
+
 #define MERGING_PARAMS(P)                                                                                           \
     P(float, radius, 0, 0, 1e30f, "of merging in the first pass, in scene units; 0: `share` of the scene's radius") \
     P(float, share, 0.003f, 1e-6f, 1, "radius of merging in the first pass over that of the scene")                 \

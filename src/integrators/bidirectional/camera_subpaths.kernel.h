@@ -16,6 +16,7 @@ BUFFER_RW(6, vec4,
 BUFFER_RW(7, PathVertexRecord, merged)  // vertices to be merged
 BUFFER_RW(8, vec4, queries)             // position, radius of each of these
 BUFFER_RW(9, uint, last_merged)         // of each pixel: slot of the last one, or NONE
+BUFFER_RW(10, float, connected)  // of each pixel, if the pass wants shares: what connections to light paths contribute
 
 #include "core/kernel/camera_connect.h"
 #include "integrators/bidirectional/path_vertex.h"
@@ -76,14 +77,15 @@ KERNEL(camera_subpaths) {
     BidirectionalPass pass = passes[0];
     FilmWindow w = window[0];
     uvec2 local = film_pixel_of(index, w);
-    uint light_path = film_pixel_number(local, w) % pass.paths;
-    if (light_path < pass.first_path || light_path - pass.first_path >= pass.part_paths) return;
+    uint light_path = pass.paths > 0u ? film_pixel_number(local, w) % pass.paths : 0u;
+    if (pass.paths > 0u && (light_path < pass.first_path || light_path - pass.first_path >= pass.part_paths)) return;
     PATH_LOG(log_partner(light_path));
     uint at = local.y * w.width + local.x;
     CameraSample camera = camera_sample(w, local, 0u);
     Subpath path = camera_path_begin(camera.ray, pass.maxdepth);
     FirstHit first = no_first_hit();
     Spectrum radiance = Spectrum(0.0f);
+    Spectrum by_connections = Spectrum(0.0f);
     connections_tried[0] = 0u;
     connections_visible[0] = 0u;
     uint last_kept = NONE;
@@ -116,7 +118,10 @@ KERNEL(camera_subpaths) {
             }
             if (pass.connections != 0) {
                 float u_connections = sample_1d_at(camera.numbers, dimension + BDPT_CONNECTIONS);
-                radiance += connect_to_path(path, s, v, last_vertices[light_path - pass.first_path], u_connections);
+                Spectrum found =
+                    connect_to_path(path, s, v, last_vertices[light_path - pass.first_path], u_connections);
+                radiance += found;
+                by_connections += found;
             }
         }
         BsdfSample next;
@@ -136,6 +141,7 @@ KERNEL(camera_subpaths) {
         }
     }
     seen[at] = slot_of(radiance, camera.weight);
+    if (pass.shares != 0u) connected[at] = dot3(film_sensor(by_connections), vec3(1.0f / 3.0f));
     if (pass.eta > 0.0f) last_merged[at] = last_kept;
     if (pass.features != 0u) {
         FilmPixel pixel = film[at];

@@ -1,5 +1,6 @@
 #include "core/render/integrator.h"
 #include "integrators/bidirectional/bidirectional.h"
+#include "integrators/bidirectional/pilot.h"
 #include "integrators/vcm/vcm_params.h"
 
 namespace lampyris {
@@ -12,15 +13,17 @@ class Vcm : public Integrator {
     ErrorRate error_rate() const override { return ErrorRate::of_photons(double(params.alpha)); }
 
     void render(RenderSession& session) override {
-        render_bidirectional(session, {.name = "vcm",
-                                       .maxdepth = params.maxdepth,
-                                       .rrdepth = params.rrdepth,
-                                       .lightpaths = params.lightpaths,
-                                       .connections = params.connections,
-                                       .weights = params.weights,
-                                       .radius = double(params.radius),
-                                       .radius_share = double(params.share),
-                                       .alpha = double(params.alpha)});
+        BidirectionalOptions options{.name = "vcm",
+                                     .maxdepth = params.maxdepth,
+                                     .rrdepth = params.rrdepth,
+                                     .lightpaths = params.lightpaths,
+                                     .connections = params.connections,
+                                     .weights = params.weights,
+                                     .radius = double(params.radius),
+                                     .radius_share = double(params.share),
+                                     .alpha = double(params.alpha)};
+        if (params.counts != 0) options = choose_counts(session, options);
+        render_bidirectional(session, options);
     }
 };
 

@@ -8,6 +8,7 @@
 #define VCM_PARAMS(P) \
     SUBPATH_PARAMS(P) \
     CONNECTION_PARAMS(P) \
+    COUNTS_PARAMS(P) \
     P(uint, weights, 0, 0, 1, "{balance|power} heuristic that weighs the strategies") \
     MERGING_PARAMS(P)
 // clang-format on
