@@ -25,6 +25,8 @@ class Bdpt : public Integrator {
                 "and from the camera");
         if (params.counts != 0 && (params.s >= 0 || params.t >= 0))
             throw InputError("error: counts=auto chooses among strategies, and s and t name one: give either");
+        if (params.counts != 0 && params.strategies != 0)
+            throw InputError("error: counts=auto leaves strategies out, and strategies=on shows all: give either");
         BidirectionalOptions options{.name = "bdpt",
                                      .maxdepth = params.maxdepth,
                                      .rrdepth = params.rrdepth,

@@ -45,7 +45,7 @@ class BidirectionalRender {
           camera_paths_(device_.compile(kCameraPaths, session.scene.effects.mask())),
           finish_(device_.compile(kPixels, session.scene.effects.mask())) {
         describe_pass();
-        part_ = std::clamp(pass_.paths, 1u, kPart);
+        part_ = std::min(pass_.paths, kPart);
         numbers_ = uint32_t(std::clamp(options.maxdepth, 1, 8));
         splats_ = device_.create_buffer(splat_bytes(pixels_, options.name), "splats");
         seen_ = device_.create_buffer(size_t(pixels_) * sizeof(glm::vec4), "radiance of camera paths");
@@ -209,7 +209,6 @@ class BidirectionalRender {
             trace_camera_paths();
             first += count;
         }
-        if (pass_.paths == 0) trace_camera_paths();
         if (merges_) merge();
         run_finish(pixels_);
         if (session_.path_log) session_.path_log->follow_light_paths([&](uint32_t path) { trace_again(path); });
@@ -382,13 +381,11 @@ class BidirectionalRender {
 
 }  // namespace
 
-uint32_t light_path_count(const BidirectionalOptions& options, const Scene& scene) {
-    if (!options.light_paths) return 0;
-    return options.lightpaths > 0 ? uint32_t(options.lightpaths) : scene.width() * scene.height();
-}
-
 void render_bidirectional(RenderSession& session, const BidirectionalOptions& options) {
-    BidirectionalRender(session, options).render();
+    if (options.light_paths)
+        BidirectionalRender(session, options).render();
+    else
+        render_camera_paths(session, options);
 }
 
 }  // namespace lampyris

@@ -14,7 +14,7 @@ struct BidirectionalOptions {
     int maxdepth = 5;
     int rrdepth = 3;
     int lightpaths = -1;                    // in each pass; -1: as many as the picture has pixels
-    bool light_paths = true;                // false: none, whatever `lightpaths` says
+    bool light_paths = true;                // false: none, whatever `lightpaths` says, which is path tracing
     int connections = -1;                   // of a camera vertex with a light path; -1: all
     uint32_t weights = 0;                   // kernel::WEIGHTS_*
     int only_light = -1, only_camera = -1;  // strategy, as counts of vertices; -1: all
@@ -32,6 +32,9 @@ uint32_t light_path_count(const BidirectionalOptions& options, const Scene& scen
 
 // Renders until the session's budget is spent. Throws InputError, MachineError.
 void render_bidirectional(RenderSession& session, const BidirectionalOptions& options);
+
+// The same without light paths: strategies s = 0 and 1 are path tracing, whose kernel takes less time for them.
+void render_camera_paths(RenderSession& session, const BidirectionalOptions& options);
 
 // Renders the session's passes again by each strategy alone, for paths with up to `depth` scattering vertices, and keeps the
 // images as layers of the session: strategy.s1t3 as it is weighed, alone.s1t3 without weights.

@@ -1,6 +1,9 @@
 #include "integrators/bidirectional/bidirectional_host.h"
 
 #include "core/base/error.h"
+#include "core/render/integrator.h"
+#include "integrators/bidirectional/bidirectional.h"
+#include "integrators/path/path_params.h"
 
 #include <fmt/format.h>
 
@@ -29,6 +32,15 @@ size_t splat_bytes(uint32_t pixels, const char* integrator) {
         throw InputError(
             fmt::format("error: \"{}\" renders at most {} pixels at once; render parts (--crop)", integrator, kMost));
     return size_t(pixels) * kernel::SPLAT_WORDS * 4;
+}
+
+uint32_t light_path_count(const BidirectionalOptions& options, const Scene& scene) {
+    return options.lightpaths > 0 ? uint32_t(options.lightpaths) : scene.width() * scene.height();
+}
+
+void render_camera_paths(RenderSession& session, const BidirectionalOptions& options) {
+    const PathParams params{.maxdepth = options.maxdepth, .rrdepth = options.rrdepth};
+    render_samples(session, "integrators/path/path.radiance.h", &params, sizeof params);
 }
 
 }  // namespace lampyris

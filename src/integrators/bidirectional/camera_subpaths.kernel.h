@@ -77,8 +77,8 @@ KERNEL(camera_subpaths) {
     BidirectionalPass pass = passes[0];
     FilmWindow w = window[0];
     uvec2 local = film_pixel_of(index, w);
-    uint light_path = pass.paths > 0u ? film_pixel_number(local, w) % pass.paths : 0u;
-    if (pass.paths > 0u && (light_path < pass.first_path || light_path - pass.first_path >= pass.part_paths)) return;
+    uint light_path = film_pixel_number(local, w) % pass.paths;
+    if (light_path < pass.first_path || light_path - pass.first_path >= pass.part_paths) return;
     PATH_LOG(log_partner(light_path));
     uint at = local.y * w.width + local.x;
     CameraSample camera = camera_sample(w, local, 0u);

@@ -32,6 +32,7 @@ constexpr double kGain = 0.9;
 constexpr double kSignificant = 2.0;  // standard errors by which it must be below
 
 // In units of a ray.
+constexpr double kPathCost = 0.75;   // of path tracing, whose kernel computes no weights of other strategies
 constexpr double kPairCost = 0.5;    // of a pair of vertices that may be connected, before its shadow ray
 constexpr double kVertexCost = 0.5;  // of a light path's vertex: its record
 constexpr double kPhotonCost = 0.5;  // of a photon
@@ -166,7 +167,8 @@ std::vector<float> render_passes(const RenderSession& session, const Scene& scen
     const double rays = double(own.progress().rays + own.photons.rays);
     pilot.rays += rays;
     pilot.seconds += own.progress().wall_s;
-    pilot.cost += cost_of(own, rays) / (2.0 * double(kPasses) * film.pixel_count());
+    const double cost = options.light_paths ? cost_of(own, rays) : kPathCost * rays;
+    pilot.cost += cost / (2.0 * double(kPasses) * film.pixel_count());
     std::vector<float> rgb = film.rgb();
     for (float& value : rgb)
         if (!std::isfinite(value)) value = 0.0f;
@@ -308,7 +310,7 @@ BidirectionalOptions choose_counts(RenderSession& session, const BidirectionalOp
     session.add_phase("pilot", seconds);
     session.add_count("pilot_rays", rays);
     session.add_choice("strategies", name_of(chosen));
-    session.add_choice("light_paths", std::to_string(light_path_count(chosen, session.scene)));
+    session.add_choice("light_paths", std::to_string(chosen.light_paths ? light_path_count(chosen, session.scene) : 0));
     session.add_choice("connections", std::to_string(chosen.connections));
     if (options.radius >= 0.0) session.add_choice("merging", chosen.radius >= 0.0 ? "true" : "false");
     if (session.on_note)
