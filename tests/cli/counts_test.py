@@ -35,3 +35,12 @@ def test_counts_that_leave_no_choice_are_an_error(program, scene, tmp_path):
     assert done.returncode == 1
     assert "lightpaths=9 and connections=2" in done.stderr
     assert "leave one of them at -1" in done.stderr
+
+
+def test_given_light_paths_do_not_make_the_pilot_long(program, scene, tmp_path):
+    stats = tmp_path / "stats.json"
+    settings = "bdpt:counts=auto,lightpaths=1000000"
+    done = run(program, scene, "-o", tmp_path / "a.pfm", "--integrator", settings, "--passes", "1", "--stats", stats)
+    assert done.returncode == 0, done.stderr
+    found = stats_of(stats)
+    assert 0 < found["counts"]["pilot_rays"] < found["rays"]

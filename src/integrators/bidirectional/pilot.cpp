@@ -31,6 +31,9 @@ constexpr double kLeastNoise = 1e-6;
 constexpr double kGain = 0.9;
 constexpr double kSignificant = 2.0;  // standard errors by which it must be below
 
+// Light paths of the pilot's passes for each pixel. With more, less noise costs as much more, and the pilot may take minutes.
+constexpr double kMostPaths = 4.0;
+
 // In units of a ray.
 constexpr double kPathCost = 0.75;   // of path tracing, whose kernel computes no weights of other strategies
 constexpr double kPairCost = 0.5;    // of a pair of vertices that may be connected, before its shadow ray
@@ -279,7 +282,7 @@ BidirectionalOptions choose_counts(RenderSession& session, const BidirectionalOp
     const NoLog none(session.path_log);
     const OtherCamera other(*session.device_scene, scene.record.camera, session.scene.record.camera);
     const double full_pixels = double(session.scene.width()) * session.scene.height();
-    const double share = double(scene.width()) * scene.height() / full_pixels;
+    const double pixels = double(scene.width()) * scene.height(), share = pixels / full_pixels;
 
     const std::vector<BidirectionalOptions> list = candidates(options);
     if (list.size() == 1)
@@ -290,7 +293,8 @@ BidirectionalOptions choose_counts(RenderSession& session, const BidirectionalOp
     std::vector<Pilot> pilots;
     double seconds = 0.0, rays = 0.0;
     for (BidirectionalOptions small : list) {
-        if (small.lightpaths > 0) small.lightpaths = std::max(1, int(std::round(small.lightpaths * share)));
+        if (small.lightpaths > 0)
+            small.lightpaths = int(std::clamp(std::round(small.lightpaths * share), 1.0, kMostPaths * pixels));
         std::optional<Pilot> pilot = render_pilot(session, scene, small);
         if (!pilot) return options;
         seconds += pilot->seconds;
