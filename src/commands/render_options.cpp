@@ -1,5 +1,6 @@
 #include "commands/render_options.h"
 
+#include "commands/console.h"
 #include "core/base/error.h"
 #include "core/base/plugin.h"
 #include "core/scene/limits.h"
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace lampyris {
@@ -57,6 +59,9 @@ std::vector<int> parse_integers(const std::string& text, char separator, size_t 
     while (at != end) {
         int value = 0;
         const auto [stop, error] = std::from_chars(at, end, value);
+        if (error == std::errc::result_out_of_range)
+            throw InputError(
+                fmt::format("error: {} {}: numbers are at most {}", option, text, std::numeric_limits<int>::max()));
         if (error != std::errc()) break;
         numbers.push_back(value);
         at = stop;
@@ -69,6 +74,16 @@ std::vector<int> parse_integers(const std::string& text, char separator, size_t 
     if (numbers.size() != count || at != end)
         throw InputError(fmt::format("error: {} {}: write {}", option, text, form));
     return numbers;
+}
+
+void RenderOptions::tell_what_a_replay_ignores() const {
+    if (quiet) return;
+    for (const auto& [option, given] :
+         {std::pair{"--output", !outputs.empty()}, std::pair{"--stats", !statistics_file.empty()},
+          std::pair{"--crop", !texts.crop.empty()}, std::pair{"--passes", texts.passes.has_value()},
+          std::pair{"--time", !texts.time.empty()},
+          std::pair{"--target-error", request.limits.target_error.has_value()}})
+        if (given) tell("note: {} has no effect: --replay prints one sample of one pixel\n", option);
 }
 
 void RenderOptions::finish() {
@@ -87,6 +102,7 @@ void RenderOptions::finish() {
         const std::vector<int> r = parse_integers(texts.replay, ',', 3, "--replay", "x,y,pass");
         if (r[2] < 0) throw InputError(fmt::format("error: --replay {}: passes are counted from 0", texts.replay));
         request.replay = {r[0], r[1], r[2]};
+        tell_what_a_replay_ignores();
     }
     BudgetLimits& limits = request.limits;
     if (!texts.time.empty()) limits.seconds = parse_duration(texts.time);
@@ -116,6 +132,10 @@ void RenderOptions::finish() {
     }
 }
 
+// What is empty counts as not given, so that a script's unset variable would go unnoticed.
+static const CLI::Validator not_empty(
+    [](const std::string& text) { return std::string(text.empty() ? "is empty" : ""); }, "");
+
 void add_render_options(CLI::App& command, RenderOptions& o) {
     command.add_option("SCENE", o.texts.scene, "Scene in pbrt-v4's text format")->required();
     command.add_option("-o,--output", o.outputs, "Image to write: .exr, .pfm or .png; may be given several times")
@@ -135,8 +155,12 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
     command.add_option("--threads", o.request.device_options.threads, "Threads of the CPU (default: all)")
         ->check(CLI::Range(1u, 4096u));
     command.add_option("--seed", o.request.seed, "Seed of the random numbers");
-    command.add_option("--resolution", o.texts.resolution, "Size to use instead of the scene's")->type_name("WxH");
-    command.add_option("--crop", o.texts.crop, "Render these pixels only (half-open)")->type_name("x0,y0,x1,y1");
+    command.add_option("--resolution", o.texts.resolution, "Size to use instead of the scene's")
+        ->type_name("WxH")
+        ->check(not_empty);
+    command.add_option("--crop", o.texts.crop, "Render these pixels only (half-open)")
+        ->type_name("x0,y0,x1,y1")
+        ->check(not_empty);
     command
         .add_option(
             "--spp", o.texts.spp,
@@ -144,7 +168,8 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
         ->type_name("N");
     command.add_option("--passes", o.texts.passes, "Stop after this many passes")->type_name("N");
     command.add_option("--time", o.texts.time, "Stop after this much rendering time: 30s, 5min, 2h")
-        ->type_name("DURATION");
+        ->type_name("DURATION")
+        ->check(not_empty);
     command
         .add_option("--target-error", o.request.limits.target_error,
                     "Stop when the estimated relMSE is below this and can be trusted")
@@ -162,11 +187,13 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
                      "Leave out what Lampyris does not simulate, and list it");
     command
         .add_option("--max-memory", o.texts.max_memory, "Most memory for buffers and acceleration structures: 512M, 8G")
-        ->type_name("SIZE");
+        ->type_name("SIZE")
+        ->check(not_empty);
     command.add_option("--view", o.write.view, "Display transform of a PNG")->capture_default_str()->type_name("NAME");
     command.add_option("--exposure", o.write.exposure, "Exposure of a PNG, in stops")->type_name("EV");
     command.add_option("--replay", o.texts.replay, "Render one sample of one pixel and print it")
-        ->type_name("X,Y,PASS");
+        ->type_name("X,Y,PASS")
+        ->check(not_empty);
     command.add_option("--set", o.texts.settings, "Any parameter: integrator.maxdepth=12, backend.ray_query=on")
         ->type_name("SECTION.KEY=VALUE");
     command.add_flag("-q,--quiet", o.quiet, "Print errors only");

@@ -22,6 +22,7 @@ struct RenderOptions {
 
     // Interprets the texts below; throws InputError. Loads the plugins.
     void finish();
+    void tell_what_a_replay_ignores() const;
     struct Texts {
         std::string scene, resolution, crop, time, max_memory, replay;
         std::vector<std::string> settings;  // SECTION.KEY=VALUE

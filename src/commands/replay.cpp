@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <string_view>
@@ -201,6 +202,18 @@ glm::dvec3 sum_of(const PathLog& log) {
     return sum;
 }
 
+// Whether the log can have all that is added to the pixel: events for which there was no room may be what the others' values need, and
+// integrators need not log what they add.
+bool adds_up(const PathLog& log) {
+    const auto adds = [](const PathEvent& event) { return event.unweighted.has_value(); };
+    const auto samples = [](const PathEvent& event) {
+        return event.record.event == kernel::LOG_SAMPLE && event.record.value != glm::vec3(0.0f);
+    };
+    const auto& events = log.events;
+    return log.missing == 0 &&
+           (std::any_of(events.begin(), events.end(), adds) || std::none_of(events.begin(), events.end(), samples));
+}
+
 // ---- Text ------------------------------------------------------------------------------------------------------------
 
 bool has_object_inside(const Json& json) {
@@ -246,7 +259,7 @@ std::string replay_text(const RenderOutcome& outcome, const std::array<int, 3>& 
                  {"albedo", {p.albedo.x, p.albedo.y, p.albedo.z}},
                  {"depth", p.depth}};
     if (const Json strategies = strategies_of(outcome.image); !strategies.empty()) json["strategies"] = strategies;
-    json["sum_of_events"] = numbers(sum_of(outcome.paths));
+    json["sum_of_events"] = adds_up(outcome.paths) ? numbers(sum_of(outcome.paths)) : Json();
     if (outcome.paths.missing > 0) json["events_missing"] = outcome.paths.missing;
     if (outcome.paths.light_paths_missing > 0) json["light_paths_missing"] = outcome.paths.light_paths_missing;
     json["paths"] = paths_of(outcome.paths);

@@ -99,3 +99,36 @@ def test_strategies_have_the_sums_of_their_events(program, room):
     for name, radiance in strategies.items():
         assert sums.pop(name, 0) == pytest.approx(radiance, rel=1e-4, abs=1e-6), name
     assert not any(sums.values())
+
+
+def test_a_sum_is_null_if_only_vertices_are_logged(program, room):
+    replay = json.loads(replay_of(program, room, "--integrator", "ao"))
+    assert any(replay["radiance"])
+    assert replay["sum_of_events"] is None
+
+
+def test_a_sum_is_null_if_events_are_missing(program, tmp_path):
+    """A path in a closed white sphere has more events than the log."""
+    scene = tmp_path / "white.pbrt"
+    white = 'Material "diffuse" "rgb reflectance" [ 1 1 1 ]\nReverseOrientation\nShape "sphere" "float radius" 9\n'
+    scene.write_text(ROOM.replace("0.7 0.6 0.5", "1 1 1") + white)
+    replay = json.loads(replay_of(program, scene, "--integrator", "path:maxdepth=60000,rrdepth=100000"))
+    assert replay["events_missing"] > 0
+    assert replay["sum_of_events"] is None
+
+
+def test_options_without_effect_are_told(program, room, tmp_path):
+    out, stats = tmp_path / "a.pfm", tmp_path / "a.json"
+    arguments = ["-o", out, "--stats", stats, "--crop", "0,0,2,2", "--passes", "3", "--time", "1s"]
+    done = run(program, room, "--replay", "5,9,0", *arguments, "--target-error", "0.1")
+    assert done.returncode == 0
+    for option in ("--output", "--stats", "--crop", "--passes", "--time", "--target-error"):
+        assert f"note: {option} has no effect" in done.stderr
+    assert not out.exists() and not stats.exists()
+
+
+@pytest.mark.parametrize("text", ["", "1,2", "1,2,4294967296", "-1,0,0", "a,b,c"])
+def test_pixels_that_are_none_are_errors(program, room, text):
+    done = run(program, room, "--replay", text)
+    assert done.returncode == 1
+    assert "--replay" in done.stderr
