@@ -1,6 +1,7 @@
 // The log of a replay: what its events add up to is the pixel, for every integrator, on every backend.
 #include "core/render/render.h"
 #include "support/render.h"
+#include "support/replay.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -19,54 +20,11 @@ namespace lampyris {
 namespace {
 
 using kernel::PathLogRecord;
+using test::expect_events_to_add_up;
+using test::kCrowded;
+using test::kRoom;
+using test::replay;
 using test::usable_backends;
-
-// A lamp and a sky, diffuse walls, a glass ball.
-const std::string kRoom = R"(
-LookAt 0 1 4  0 0.8 0  0 1 0
-Camera "perspective" "float fov" 45
-Film "rgb" "integer xresolution" 24 "integer yresolution" 16 "float maxcomponentvalue" 1000
-PixelFilter "gaussian" "float xradius" 1.2 "float yradius" 1.2 "float sigma" 0.5
-WorldBegin
-LightSource "infinite" "rgb L" [ 0.2 0.3 0.4 ]
-AttributeBegin
-AreaLightSource "diffuse" "rgb L" [ 9 8 7 ]
-Shape "trianglemesh" "point3 P" [ -0.5 2 -0.5 0.5 2 -0.5 0.5 2 0.5 -0.5 2 0.5 ] "integer indices" [ 0 1 2 0 2 3 ]
-AttributeEnd
-Material "diffuse" "rgb reflectance" [ 0.7 0.6 0.5 ]
-Shape "trianglemesh" "point3 P" [ -3 0 -3 -3 0 3 3 0 3 3 0 -3 ] "integer indices" [ 0 1 2 0 2 3 ]
-Shape "trianglemesh" "point3 P" [ -3 0 -1.5 3 0 -1.5 3 3 -1.5 -3 3 -1.5 ] "integer indices" [ 0 1 2 0 2 3 ]
-AttributeBegin
-Material "dielectric"
-Translate -0.7 0.55 0
-Shape "sphere" "float radius" 0.5
-AttributeEnd
-)";
-
-// The same with a mask, a medium behind an interface, and coats, smooth and rough.
-const std::string kCrowded = kRoom + R"(
-MakeNamedMedium "smoke" "string type" "homogeneous" "rgb sigma_a" [ 0.3 0.6 0.9 ] "rgb sigma_s" [ 0 0 0 ]
-AttributeBegin
-Material "coateddiffuse" "rgb reflectance" [ 0.6 0.2 0.2 ] "float roughness" 0
-Translate 0.3 0.4 -0.6
-Shape "sphere" "float radius" 0.4
-AttributeEnd
-AttributeBegin
-Material "coateddiffuse" "rgb reflectance" [ 0.2 0.6 0.2 ] "float roughness" 0.2
-Translate 1.2 0.4 -0.6
-Shape "sphere" "float radius" 0.4
-AttributeEnd
-AttributeBegin
-Material "interface"
-MediumInterface "smoke" ""
-Translate 0.5 0.6 0.8
-Shape "sphere" "float radius" 0.4
-AttributeEnd
-AttributeBegin
-Material "diffuse" "rgb reflectance" [ 0.3 0.3 0.8 ]
-Shape "trianglemesh" "point3 P" [ -1.5 0.2 1 -0.2 0.2 1 -0.2 1.5 1 -1.5 1.5 1 ] "integer indices" [ 0 1 2 0 2 3 ] "float alpha" 0.5
-AttributeEnd
-)";
 
 const std::vector<std::string> kIntegrators = {"path:maxdepth=6",
                                                "light:maxdepth=6,lightpaths=20000",
@@ -79,46 +37,17 @@ const std::vector<std::string> kIntegrators = {"path:maxdepth=6",
                                                "ppm:maxdepth=6,radius=0.2,photonsperiteration=4000",
                                                "mlt:maxdepth=6,chains=64"};
 
-RenderOutcome replay(const std::string& scene, const std::string& integrator, std::shared_ptr<Device> device,
-                     std::array<int, 3> pixel) {
-    RenderRequest request;
-    request.scene = SceneSource::of_text(scene);
-    request.integrator = integrator;
-    if (integrator.starts_with("ppm")) request.samples_per_pixel = 3;
-    request.device = std::move(device);
-    request.replay = pixel;
-    request.seed = 7;
-    return render(request);
-}
-
-void expect_events_to_add_up(const RenderOutcome& outcome) {
-    const kernel::FilmPixel& pixel = outcome.pixels[0];
-    EXPECT_EQ(pixel.left_out, 0u);
-    EXPECT_EQ(outcome.paths.missing, 0u);
-    EXPECT_FALSE(outcome.paths.events.empty());
-    glm::dvec3 sum(0.0), size(0.0);
-    for (const PathEvent& event : outcome.paths.events) {
-        sum += event.added();
-        size += glm::abs(event.added());
-        if (!event.unweighted) continue;
-        EXPECT_GE(event.record.weight, 0.0f);
-        EXPECT_LE(event.record.weight, 1.0f);
-    }
-    // Rounding of the kernels' sums, and of the quanta of splats.
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum[c], double(pixel.sum[c]), 2e-5 * size[c] + 2e-6) << c;
-}
-
 class ReplayTest : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
 
 TEST_P(ReplayTest, EventsAddUpToThePixel) {
     const auto& [integrator, backend] = GetParam();
     const std::shared_ptr<Device> device = create_device(backend, {});
-    // A shader with every effect takes a driver minutes to compile.
+    // A shader with every effect takes a driver minutes to compile: replay_long_test has it.
     const bool slow = backend == "vulkan";
     std::map<uint32_t, int> seen;
     double lit = 0.0;
     for (const std::string* scene : {&kRoom, &kCrowded}) {
-        if (slow && scene == &kCrowded && !integrator.starts_with("path")) continue;
+        if (slow && scene == &kCrowded) continue;
         for (int y = 2; y < 16; y += slow ? 6 : 3)
             for (int x = 1; x < 24; x += slow ? 9 : 3) {
                 SCOPED_TRACE(fmt::format("{} pixel {} {}", scene == &kRoom ? "room" : "crowded", x, y));
