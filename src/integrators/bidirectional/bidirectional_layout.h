@@ -17,7 +17,7 @@ struct BidirectionalPass {
     uint number;
     uint seed;
     uint sampler_kind;  // SAMPLER_*
-    uint paths;         // from lights, in the pass; 0: no strategy with vertices from lights but next-event estimation
+    uint paths;         // from lights, in the pass
     uint first_path;
     uint part_paths;
     uint capacity;  // light vertices that can be stored

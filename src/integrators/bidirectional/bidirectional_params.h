@@ -17,7 +17,7 @@
 #define COUNTS_PARAMS(P)                                                                                             \
     P(uint, counts, 0, 0, 1,                                                                                         \
       "{fixed|auto} auto: of light paths, connections and merging, a pilot rendering chooses what suits the scene; " \
-      "`lightpaths` and `connections` stay if they are not at their defaults")
+      "`lightpaths` that are given stay, and `connections` while there are light paths")
 
 #define MERGING_PARAMS(P)                                                                                           \
     P(float, radius, 0, 0, 1e30f, "of merging in the first pass, in scene units; 0: `share` of the scene's radius") \
