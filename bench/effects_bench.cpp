@@ -35,7 +35,7 @@ int run(const std::string& file, int width, int height, uint32_t samples, bool e
     const IntegratorFactory& factory = integrators().require("path");
     set_defaults(&params, factory.fields);
     const char* kernel_file = exact ? "effects_path.radiance.h" : "integrators/path/path.radiance.h";
-    const CpuKernelFunction kernel = find_cpu_kernel(kernel_file, CpuTracerKind::embree, scene.effects.mask());
+    const CpuKernelFunction kernel = find_cpu_kernel(kernel_file, scene.effects.mask());
 
     const uint32_t pixels = uint32_t(width) * uint32_t(height);
     std::vector<kernel::FilmPixel> film(pixels);

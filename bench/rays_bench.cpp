@@ -102,8 +102,7 @@ int run(const std::string& file, int width, int height, uint32_t samples, int th
     set_defaults(&params, factory.fields);
     Diagnostics diagnostics(*loaded.sources);  // ignored: the scene may name another integrator
     read_parameters(&params, factory.fields, loaded.settings.integrator.parameters, diagnostics);
-    const CpuKernelFunction kernel =
-        find_cpu_kernel("integrators/path/path.radiance.h", CpuTracerKind::embree, scene.effects.mask());
+    const CpuKernelFunction kernel = find_cpu_kernel("integrators/path/path.radiance.h", scene.effects.mask());
 
     const uint32_t pixels = uint32_t(width) * uint32_t(height);
     std::vector<kernel::FilmPixel> film(pixels);

@@ -9,17 +9,17 @@
 # consumer, including those of another target (OTHER_..., by name), and vice versa.
 set(LAMPYRIS_KERNELS_DIR ${CMAKE_CURRENT_LIST_DIR})
 
-# lampyris_kernel(FILE [TRACES_RAYS] [GLSL_ONLY] [CPU_EFFECTS sets...])
+# lampyris_kernel(FILE [GLSL_ONLY] [CPU_EFFECTS sets...])
 #
 # How the C++ compiler builds a kernel of the current folder. Stands in the folder's NAME.cmake, or in a plugin's
-# CMakeLists.txt before lampyris_add_plugin. A file without this is built once, with all effects.
+# CMakeLists.txt before lampyris_add_plugin. There is always one build that has all effects and can log paths, for replays
+# (core/kernel/path_log.h).
 #
-#   TRACES_RAYS  there is one build for each tracer; always so for NAME.radiance.h
 #   GLSL_ONLY    there is none: the kernel needs hardware that no CPU backend has
-#   CPU_EFFECTS  there is one build for each of these sets of effects (core/kernel/effects.h), in quotes if they are
-#                expressions; a scene runs on the smallest one that has all of its effects. kAllEffects is for all others
+#   CPU_EFFECTS  there is one build more for each of these sets of effects (core/kernel/effects.h), in quotes if they are
+#                expressions; a scene runs on the smallest one that has all of its effects. kAllEffects: all, but no log
 function(lampyris_kernel file)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "TRACES_RAYS;GLSL_ONLY" "" "CPU_EFFECTS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "GLSL_ONLY" "" "CPU_EFFECTS")
   set(where "${CMAKE_CURRENT_LIST_FILE}: lampyris_kernel(${file} ...)")
   if(arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "${where}: wrong arguments: ${ARGN}; cmake/LampyrisKernels.cmake says what it takes")
@@ -28,7 +28,7 @@ function(lampyris_kernel file)
   if(NOT EXISTS ${path})
     message(FATAL_ERROR "${where}: there is no such file")
   endif()
-  foreach(word TRACES_RAYS GLSL_ONLY CPU_EFFECTS)
+  foreach(word GLSL_ONLY CPU_EFFECTS)
     set_property(GLOBAL PROPERTY "LAMPYRIS_KERNEL_${word}:${path}" "${arg_${word}}")
   endforeach()
 endfunction()
@@ -127,7 +127,7 @@ function(lampyris_glsl_only file result)
   endif()
 endfunction()
 
-# The C++ units of one kernel, whose name is its files' names joined by '+'; `file` is the one whose effect sets count. There is one unit per tracer and effect variant, so that they compile in parallel.
+# The C++ units of one kernel, whose name is its files' names joined by '+'; `file` is the one whose effect sets count. There is one unit for each set, so that they compile in parallel.
 function(lampyris_kernel_units target out KERNEL_FILE file)
   string(REPLACE "+" ";" parts "${KERNEL_FILE}")
   set(KERNEL_NAME "")
@@ -142,32 +142,23 @@ function(lampyris_kernel_units target out KERNEL_FILE file)
     string(APPEND KERNEL_INCLUDES "#include \"core/kernel/pixel_loop.h\"\n")
   endif()
   list(JOIN KERNEL_NAME "+" KERNEL_NAME)
-  get_property(KERNEL_VARIANTS GLOBAL PROPERTY "LAMPYRIS_KERNEL_CPU_EFFECTS:${file}")
-  if(NOT KERNEL_VARIANTS OR (DEFINED LAMPYRIS_SPECIALISED_KERNELS AND NOT LAMPYRIS_SPECIALISED_KERNELS))
-    set(KERNEL_VARIANTS "kAllEffects")
+  set(variants "kAllEffects | EFFECT_PATH_LOG")
+  if(NOT DEFINED LAMPYRIS_SPECIALISED_KERNELS OR LAMPYRIS_SPECIALISED_KERNELS)
+    get_property(declared GLOBAL PROPERTY "LAMPYRIS_KERNEL_CPU_EFFECTS:${file}")
+    list(APPEND variants ${declared})
   endif()
-  get_property(traces_rays GLOBAL PROPERTY "LAMPYRIS_KERNEL_TRACES_RAYS:${file}")
-  set(tracers any)
-  if(traces_rays OR KERNEL_FILE MATCHES "\\.radiance\\.h$")
-    set(tracers embree bvh2)
-  endif()
-  foreach(KERNEL_TRACER ${tracers})
-    set(number 0)
-    foreach(KERNEL_VARIANT ${KERNEL_VARIANTS})
-      if(KERNEL_TRACER STREQUAL "bvh2" AND NOT KERNEL_VARIANT STREQUAL "kAllEffects")
-        continue()  # the debugging backend needs no specialisation
-      endif()
-      # By default, GCC passes surfaces and materials through memory, which costs 10 % of a diffuse path's time. With
-      # every effect, inlining everything would take a minute to compile.
-      if(KERNEL_VARIANT STREQUAL "kAllEffects")
-        set(KERNEL_INLINE_ALL OFF)
-      else()
-        set(KERNEL_INLINE_ALL ON)
-      endif()
-      set(unit ${out}/${KERNEL_NAME}.${KERNEL_TRACER}.${number}.cpp)
-      configure_file(${LAMPYRIS_KERNELS_DIR}/cpu_kernel.cpp.in ${unit} @ONLY)
-      target_sources(${target} PRIVATE ${unit})
-      math(EXPR number "${number} + 1")
-    endforeach()
+  set(number 0)
+  foreach(KERNEL_VARIANT ${variants})
+    # By default, GCC passes surfaces and materials through memory, which costs 10 % of a diffuse path's time. With
+    # every effect, inlining everything would take a minute to compile.
+    if(KERNEL_VARIANT MATCHES "^kAllEffects")
+      set(KERNEL_INLINE_ALL OFF)
+    else()
+      set(KERNEL_INLINE_ALL ON)
+    endif()
+    set(unit ${out}/${KERNEL_NAME}.${number}.cpp)
+    configure_file(${LAMPYRIS_KERNELS_DIR}/cpu_kernel.cpp.in ${unit} @ONLY)
+    target_sources(${target} PRIVATE ${unit})
+    math(EXPR number "${number} + 1")
   endforeach()
 endfunction()

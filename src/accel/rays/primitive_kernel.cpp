@@ -1,30 +1,15 @@
 #include "accel/rays/primitive_kernel.h"
 
-#define KERNEL_TRACER_embree 1
-#include "core/device/cpp_kernel.h"
+#include "accel/rays/scene_kernel.h"
 #include "core/scene/scene.h"
 
 #include <limits>
 
 namespace lampyris {
-namespace kernel {
-namespace {
-
-template <EffectSet kEffects>
-struct PrimitiveKernel {
-    void* const* scene_buffers_;
-    KernelBufferTable kernel_buffers_;
-    const CpuTracer* tracer_;
-    uint* unfinished_;
-#include "core/kernel/scene.h"
-};
-
-}  // namespace
-}  // namespace kernel
 
 bool primitive_hit(void* const* scene_buffers, uint32_t geometry, uint32_t primitive, const float origin[3],
                    const float direction[3], float t_max, float& t) {
-    kernel::PrimitiveKernel<kernel::kAllEffects> code{scene_buffers, {}, nullptr, nullptr};
+    kernel::SceneKernel<kernel::kAllEffects> code{scene_buffers, {}, nullptr, nullptr};
     const glm::vec3 o(origin[0], origin[1], origin[2]), d(direction[0], direction[1], direction[2]);
     if (code.geometries[geometry].kind == kernel::GEOMETRY_BILINEAR) {
         glm::vec2 uv;

@@ -130,7 +130,7 @@ class CpuDevice final : public Device {
     }
 
     KernelHandle compile(std::string_view file, uint64_t effects) override {
-        return std::make_shared<CpuKernel>(file, find_cpu_kernel(file, tracer_, effects));
+        return std::make_shared<CpuKernel>(file, find_cpu_kernel(file, effects));
     }
 
     void run(const Kernel& kernel, const DeviceScene* scene, std::span<const NamedBuffer> buffers, uint32_t begin,
@@ -154,7 +154,8 @@ class CpuDevice final : public Device {
         call.unfinished = &unfinished;
         // Small blocks, handed out as threads become free, because path lengths vary a lot.
         const uint32_t block = std::clamp<uint32_t>(count / (threads_ * 32u), 1u, 256u);
-        const Watch& watch = current_watch();  // of the calling thread; TBB's threads have none
+        if (cpu_scene) cpu_scene->take_unfinished();  // of a run that was cut short
+        const Watch& watch = current_watch();         // of the calling thread; TBB's threads have none
         arena_.execute([&] {
             tbb::parallel_for(
                 tbb::blocked_range<uint64_t>(begin, uint64_t(begin) + count, block),
@@ -169,7 +170,7 @@ class CpuDevice final : public Device {
                 tbb::simple_partitioner{});
         });
         statistics_.kernel_s[cpu_kernel.file()] += seconds_since(start);
-        if (unfinished)
+        if (unfinished || (cpu_scene && cpu_scene->take_unfinished()))
             throw UnfinishedError(
                 fmt::format("error: kernel {} could not finish a loop within its bound; the image would be wrong",
                             cpu_kernel.file()));

@@ -1,6 +1,7 @@
 #include "backends/cpu/cpu_scene.h"
 
 #include "accel/rays/bvh2.h"
+#include "accel/rays/bvh2_walk.h"
 #include "accel/rays/embree_scene.h"
 
 namespace lampyris {
@@ -9,6 +10,8 @@ CpuScene::CpuScene(const Scene& scene, CpuTracerKind tracer) {
     if (tracer == CpuTracerKind::bvh2) {
         bvh_ = std::make_unique<Bvh2Scene>(scene);
         bind(bvh_->buffers());
+        walk_ = std::make_unique<Bvh2Walk>(buffers_.data());
+        tracer_ = walk_->tracer();
         memory_ = bvh_->bvh().bytes();
         return;
     }
@@ -19,6 +22,8 @@ CpuScene::CpuScene(const Scene& scene, CpuTracerKind tracer) {
 }
 
 CpuScene::~CpuScene() = default;
+
+bool CpuScene::take_unfinished() const { return walk_ && walk_->take_unfinished(); }
 
 void CpuScene::bind(const std::vector<SceneBuffer>& buffers) {
     // Kernels read these arrays in place; none writes to the scene.

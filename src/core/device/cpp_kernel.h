@@ -1,6 +1,11 @@
 // The C++ side of the kernel dialect: GLSL's types and functions, from GLM. Only generated files include it.
 #pragma once
 
+// Kernels call the tracer that their device hands over, unless the including file names another.
+#ifndef KERNEL_TRACER_bvh2
+#define KERNEL_TRACER_calls 1
+#endif
+
 #include "core/device/kernel_registry.h"
 #include "core/device/kernel_types.h"
 

@@ -13,7 +13,6 @@ namespace lampyris {
 namespace {
 
 struct Build {
-    CpuTracerKind tracer;
     uint64_t effects;
     CpuKernelFunction run;
     CpuKernelDeclaration declare;
@@ -31,9 +30,9 @@ std::map<std::string, std::string_view, std::less<>>& texts() {
 
 }  // namespace
 
-CpuKernelVariant::CpuKernelVariant(const char* file, CpuTracerKind tracer, uint64_t effects, CpuKernelFunction run,
+CpuKernelVariant::CpuKernelVariant(const char* file, uint64_t effects, CpuKernelFunction run,
                                    CpuKernelDeclaration declare) {
-    builds().insert({file, Build{tracer, effects, run, declare}});
+    builds().insert({file, Build{effects, run, declare}});
 }
 
 KernelText::KernelText(const char* file, std::string_view text) { texts().insert_or_assign(file, text); }
@@ -58,12 +57,12 @@ std::vector<std::string_view> kernel_parts(std::string_view file) {
     return parts;
 }
 
-CpuKernelFunction find_cpu_kernel(std::string_view file, CpuTracerKind tracer, uint64_t effects) {
+CpuKernelFunction find_cpu_kernel(std::string_view file, uint64_t effects) {
     const Build* best = nullptr;
     const auto [begin, end] = builds().equal_range(file);
     for (auto it = begin; it != end; ++it) {
         const Build& build = it->second;
-        if (build.tracer != tracer || (effects & ~build.effects) != 0) continue;
+        if ((effects & ~build.effects) != 0) continue;
         if (!best || std::popcount(build.effects) < std::popcount(best->effects)) best = &build;
     }
     const std::vector<std::string_view> parts = kernel_parts(file);

@@ -11,8 +11,6 @@
 
 namespace lampyris {
 
-enum class CpuTracerKind { embree, bvh2 };
-
 // The primitive that a ray hit. Distance and position are recomputed in shared code, so that backends agree to the bit.
 struct TraceHit {
     uint32_t instance, geometry, primitive;
@@ -56,8 +54,7 @@ using CpuKernelDeclaration = void (*)(std::vector<KernelBuffer>& declared);
 
 // A C++ build of a kernel for a set of effects; registers itself.
 struct CpuKernelVariant {
-    CpuKernelVariant(const char* file, CpuTracerKind tracer, uint64_t effects, CpuKernelFunction run,
-                     CpuKernelDeclaration declare);
+    CpuKernelVariant(const char* file, uint64_t effects, CpuKernelFunction run, CpuKernelDeclaration declare);
 };
 
 // A kernel file's or header's text; registers itself.
@@ -76,7 +73,7 @@ inline constexpr std::string_view kPixelLoop = "core/kernel/pixel_loop.h";
 
 // The C++ build that includes all of `effects` and the fewest others. Throws std::logic_error for an unknown kernel, and
 // InputError for a pair of files from two plugins, for which there is no build.
-CpuKernelFunction find_cpu_kernel(std::string_view file, CpuTracerKind tracer, uint64_t effects);
+CpuKernelFunction find_cpu_kernel(std::string_view file, uint64_t effects);
 
 // The buffers that a kernel's C++ build declares; empty if there is no such build.
 std::optional<std::vector<KernelBuffer>> find_kernel_buffers(std::string_view file);

@@ -2,19 +2,8 @@
 #ifndef LAMPYRIS_KERNEL_TRACE
 #define LAMPYRIS_KERNEL_TRACE
 
-#ifdef KERNEL_TRACER_any  // C++ only: these are compiled where they are called, which is then an error
-FN bool trace_closest(vec3 origin, vec3 direction, float t_max, OUT(Hit) hit) {
-    static_assert(!kEffects && kEffects,
-                  "the kernel traces rays: give it TRACES_RAYS (lampyris_kernel, in its folder)");
-    return false;
-}
-FN bool trace_occluded(vec3 origin, vec3 direction, float t_max) {
-    static_assert(!kEffects && kEffects,
-                  "the kernel traces rays: give it TRACES_RAYS (lampyris_kernel, in its folder)");
-    return false;
-}
-#elif defined(KERNEL_TRACER_embree)
-// Hits with 0 < t < t_max. The direction need not be unit length.
+#ifdef KERNEL_TRACER_calls
+// C++: the device hands the tracer over. Hits with 0 < t < t_max. The direction need not be unit length.
 FN bool trace_closest(vec3 origin, vec3 direction, float t_max, OUT(Hit) hit) {
     TraceHit found;
     if (!tracer_->closest(tracer_->scene, &origin.x, &direction.x, t_max, found)) return false;

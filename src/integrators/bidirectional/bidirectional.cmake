@@ -1,3 +1,3 @@
 set(sets kAllEffects kTexturedEffects kGlassEffects "kDiffuseEffects | EFFECT_QUADRICS")
-lampyris_kernel(light_subpaths.kernel.h TRACES_RAYS CPU_EFFECTS ${sets})
-lampyris_kernel(camera_subpaths.kernel.h TRACES_RAYS CPU_EFFECTS ${sets})
+lampyris_kernel(light_subpaths.kernel.h CPU_EFFECTS ${sets})
+lampyris_kernel(camera_subpaths.kernel.h CPU_EFFECTS ${sets})

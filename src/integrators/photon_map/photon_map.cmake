@@ -1,1 +1,1 @@
-lampyris_kernel(photon_map_rays.kernel.h TRACES_RAYS CPU_EFFECTS kAllEffects kTexturedEffects kGlassEffects)
+lampyris_kernel(photon_map_rays.kernel.h CPU_EFFECTS kAllEffects kTexturedEffects kGlassEffects)

@@ -1,5 +1,5 @@
 set(sets kAllEffects kTexturedEffects kGlassEffects)
-lampyris_kernel(eye_pass.kernel.h TRACES_RAYS CPU_EFFECTS ${sets})
-lampyris_kernel(photon_pass.kernel.h TRACES_RAYS CPU_EFFECTS ${sets})
-lampyris_kernel(hit_direct_light.kernel.h TRACES_RAYS CPU_EFFECTS ${sets})
+lampyris_kernel(eye_pass.kernel.h CPU_EFFECTS ${sets})
+lampyris_kernel(photon_pass.kernel.h CPU_EFFECTS ${sets})
+lampyris_kernel(hit_direct_light.kernel.h CPU_EFFECTS ${sets})
 lampyris_kernel(hit_flux.consumer.h CPU_EFFECTS ${sets})
