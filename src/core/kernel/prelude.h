@@ -18,10 +18,12 @@
 // scenes run. Pass it copies of structs: a struct whose address another function gets stays in memory.
 #define RARE_FN inline __attribute__((noinline))
 #define RARELY(condition) __builtin_expect((condition), false)
+// A function that C++ compilers inline always: one that is small, or whose constant arguments remove most of it.
+#define INLINED_FN inline __attribute__((always_inline))
 // Whether a RARE_FN is a function of its own; if not, every call adds its code to the kernel once more.
 #define SEPARATE_FUNCTIONS 1
 #ifdef KERNEL_INLINE_ALL
-#define FN inline __attribute__((always_inline))
+#define FN INLINED_FN
 #else
 #define FN inline
 #endif
@@ -75,6 +77,7 @@ CONST bool DRIVERS_END_LOOPS = false;
 #endif
 #define FN
 #define RARE_FN
+#define INLINED_FN
 #define RARELY(condition) (condition)
 #define SEPARATE_FUNCTIONS 0
 #define SCENE_RO(binding_, T, name) \

@@ -81,8 +81,8 @@ CONST uint LAYERED_DENSITY = 4u;
 // from -w instead, so that the two weights do not sum to 1, and values of rough coats are too bright: by 8 % over a
 // white diffuse base at alpha = 0.3. Images can only agree with pbrt's by doing the same, so this is the default. (f is
 // reciprocal between the transport modes: one evaluation serves both directions.)
-FN Spectrum layered_walks(IN(Bsdf) b, vec3 wo, vec3 wi, float uc, vec2 u, uint transport, uint job, uint jobs,
-                          uint hash_o, uint hash_i, INOUT(BsdfSample) s) {
+INLINED_FN Spectrum layered_walks(IN(Bsdf) b, vec3 wo, vec3 wi, float uc, vec2 u, uint transport, uint job, uint jobs,
+                                  uint hash_o, uint hash_i, INOUT(BsdfSample) s) {
     bool sampling = (jobs & LAYERED_SAMPLE) != 0u && job == LAYERED_SAMPLE;
     bool valuing = (jobs & LAYERED_VALUE) != 0u && job == LAYERED_VALUE;
     bool weighing = (jobs & LAYERED_DENSITY) != 0u && job == LAYERED_DENSITY;
