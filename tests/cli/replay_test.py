@@ -115,6 +115,9 @@ def test_a_sum_is_null_if_events_are_missing(program, tmp_path):
     replay = json.loads(replay_of(program, scene, "--integrator", "path:maxdepth=60000,rrdepth=100000"))
     assert replay["events_missing"] > 0
     assert replay["sum_of_events"] is None
+    # The record that closes the path has a place of its own, so that the events that are there have values.
+    assert replay["paths"][0]["events"][-1]["event"] == "sample"
+    assert len(added(replay)) > 1000 and any(event["added"][0] > 0 for event in added(replay))
 
 
 def test_options_without_effect_are_told(program, room, tmp_path):

@@ -91,7 +91,10 @@ RARE_FN void log_write(PathLogRecord r) {
     log_now[0].order += 1u;  // in every mode: a light path that runs again has its events at the same places
     if (!wanted) return;
     uint slot = ATOMIC_ADD_U32(path_log[0].event, 1u);
-    if (slot < path_log[0].kind) path_log[slot + 1u] = r;
+    // The last place is for the record that closes a camera path: without it, no contribution of the path has a value.
+    uint last = path_log[0].kind - 1u;
+    if (slot >= last && r.event != LOG_SAMPLE) return;
+    path_log[min(slot, last) + 1u] = r;
 }
 
 // ---- What a path's contributions become ------------------------------------------------------------------------------

@@ -13,6 +13,8 @@ namespace {
 using kernel::PathLogRecord;
 
 constexpr uint32_t kCapacity = 1u << 16;
+// Of the record that closes a path when there is no room for others, and of its event, which is NONE if nothing was written there.
+constexpr size_t kLastPlace = size_t(kCapacity) * sizeof(PathLogRecord) + offsetof(PathLogRecord, event);
 constexpr size_t kMostLightPaths = 1024;  // that are traced again, each in a run of its own
 
 // By path, and on a path by order. Photons are merged in any order, and have the same one.
@@ -59,6 +61,7 @@ PathLogger::PathLogger(Device& device)
     header.kind = kCapacity;
     header.path = kernel::LOG_MODE_PIXEL;
     buffer_->upload(&header, sizeof header);
+    buffer_->upload(&kernel::NONE, sizeof kernel::NONE, kLastPlace);
     device_.set_path_log(buffer_);
 }
 
@@ -77,9 +80,11 @@ uint64_t PathLogger::asked() const {
     return header.event;
 }
 
-std::vector<PathLogRecord> PathLogger::records() const {
+std::vector<PathLogRecord> PathLogger::records(uint64_t* written) const {
     std::vector<PathLogRecord> records(std::min<uint64_t>(asked(), kCapacity));
     buffer_->download(records.data(), records.size() * sizeof records[0], sizeof records[0]);
+    if (!records.empty() && records.back().event == kernel::NONE) records.pop_back();
+    if (written) *written = records.size();
     std::sort(records.begin(), records.end(),
               [](const PathLogRecord& a, const PathLogRecord& b) { return place_of(a) < place_of(b); });
     // A kernel that ran again because a buffer was too small logged the same.
@@ -110,11 +115,11 @@ void PathLogger::stop() { set_mode(kernel::LOG_MODE_OFF); }
 void PathLogger::go_on() { set_mode(kernel::LOG_MODE_PIXEL); }
 
 PathLog PathLogger::log() const {
-    const std::vector<PathLogRecord> found = records();
+    uint64_t written = 0;
+    const std::vector<PathLogRecord> found = records(&written);
     const PathFactors factors(found);
     PathLog log;
-    const uint64_t count = asked();
-    log.missing = count - std::min<uint64_t>(count, kCapacity);
+    log.missing = asked() - written;
     log.light_paths_missing = light_paths_missing_;
     for (const PathLogRecord& r : found) {
         PathEvent& event = log.events.emplace_back(PathEvent{r, {}});

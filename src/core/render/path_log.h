@@ -45,7 +45,8 @@ class PathLogger {
 
  private:
     void set_mode(uint32_t mode);
-    std::vector<kernel::PathLogRecord> records() const;
+    // In order, each once; `written`: how many there are with those that were logged twice.
+    std::vector<kernel::PathLogRecord> records(uint64_t* written = nullptr) const;
     uint64_t asked() const;  // records, including those that did not fit
     Device& device_;
     BufferHandle buffer_;
