@@ -32,8 +32,8 @@ struct ProbePath {
     float sides;
     float pc;  // of a camera ray: 1/sr, or per area if orthographic
     float lens_samples;
-    float radius;  // of the scene
-    float unused;
+    float radius;   // of the scene
+    float samples;  // of each strategy that connects two vertices
 };
 
 BUFFER_RO(0, uvec4, what)  // heuristic
@@ -79,6 +79,7 @@ FN float importance(IN(ProbePath) p, uint at) {
 FN void arrives(IN(ProbePath) p, INOUT(MisSums) m, uint at, uint previous, bool no_distance, uint h) {
     float d2 = no_distance ? 1.0f : mis_area(p, length_squared(way(previous, at)));
     mis_arrive(m, d2, cosine(at, previous), h);
+    if (previous != p.first && previous + 1u != p.first + p.count) m.a *= mis_term(p.samples, h);
 }
 
 // subpath_leaves
@@ -119,8 +120,9 @@ FN float weight_of_connection(IN(ProbePath) p, IN(MisSums) m, uint x, uint h) {
     float inverse_d2 = 1.0f / mis_area(p, length_squared(way(x, y)));
     float from_x = vertices[x].to_light * abs(cosine(y, x)) * inverse_d2;
     float from_y = vertices[y].to_camera * abs(cosine(x, y)) * inverse_d2;
-    return mis_weight(mis_end(m_y, from_x, vertices[y].to_light, 0.0f, h) +
-                      mis_end(m, from_y, vertices[x].to_camera, 0.0f, h));
+    float others =
+        mis_end(m_y, from_x, vertices[y].to_light, 0.0f, h) + mis_end(m, from_y, vertices[x].to_camera, 0.0f, h);
+    return mis_weight(others / mis_term(p.samples, h));
 }
 
 // weight_of_hit_light, weight_of_environment: the sums are those that leave vertex 1

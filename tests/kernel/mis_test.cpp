@@ -39,7 +39,7 @@ struct ProbeVertex {
 struct ProbePath {
     uint32_t first, count, light, orthographic;
     float pe, pw, pd, sides;
-    float pc, lens_samples, radius, unused;
+    float pc, lens_samples, radius, samples;
 };
 
 struct Paths {
@@ -48,7 +48,15 @@ struct Paths {
 };
 
 // What a wrong implementation might do.
-enum class Mistake { kNone, kShadingCosine, kNoEta, kOrthographicDistance, kNoLensSamples, kAreaDensityOfLight };
+enum class Mistake {
+    kNone,
+    kShadingCosine,
+    kNoEta,
+    kOrthographicDistance,
+    kNoLensSamples,
+    kAreaDensityOfLight,
+    kOneConnection
+};
 
 // One path, and the densities with which its vertices are sampled from their neighbours.
 class Reference {
@@ -64,6 +72,7 @@ class Reference {
         if (s > 0 && (is_specular(s - 1) || is_specular(s))) return 0;
         double product = s == last ? double(path_.lens_samples) : 1.0;
         if (s == last && mistake_ == Mistake::kNoLensSamples) product = 1;
+        if (s > 1 && s < last && mistake_ != Mistake::kOneConnection) product *= double(path_.samples);
         for (uint32_t i = 0; i < s; ++i) product *= s == 1 ? next_event() : from_light(i);
         for (uint32_t i = s; i < last; ++i) product *= from_camera(i);
         return product;
@@ -174,6 +183,7 @@ class Maker {
         // A pixel has a small solid angle, and many light paths.
         const float pixels = std::pow(10.0f, float(random_() % 7));
         p.lens_samples = pixels * spread(1);
+        p.samples = float(1 + random_() % 4);
         p.pc = pixels * spread(1) * (p.orthographic ? per_area : 1.0f);
         one.paths = {p};
         for (uint32_t i = 0; i < p.count; ++i) {
@@ -302,7 +312,8 @@ TEST(Mis, MistakesWouldBeSeen) {
                     {"no eta^2", Mistake::kNoEta},
                     {"distance to an orthographic camera", Mistake::kOrthographicDistance},
                     {"no number of light paths", Mistake::kNoLensSamples},
-                    {"area density for next-event estimation", Mistake::kAreaDensityOfLight}};
+                    {"area density for next-event estimation", Mistake::kAreaDensityOfLight},
+                    {"one connection for each strategy", Mistake::kOneConnection}};
     for (int beta = 1; beta <= 2; ++beta) {
         const std::vector<float> found = weights_on("cpu", random_paths(), beta);
         for (const auto& m : mistakes) {

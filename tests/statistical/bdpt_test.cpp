@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lampyris::test {
@@ -82,6 +83,21 @@ TEST_P(Bidirectional, EachStrategyAloneShowsItsPaths) {
         }
 }
 
+// The same for connections to many light paths, which pixels share: errors are those between runs.
+TEST_P(Bidirectional, EachStrategyOfTheCacheShowsItsPaths) {
+    constexpr double kAlbedo = 0.6;
+    constexpr uint32_t kRuns = 16;
+    for (const auto& [s, t] : {std::pair(2, 2), std::pair(2, 3), std::pair(3, 2), std::pair(4, 2)}) {
+        if (GetParam() == "vulkan" && s != 3) continue;  // the same kernels
+        const double right = std::pow(kAlbedo, s + t - 2);
+        const std::string integrator = fmt::format("bdpt:maxdepth=6,cache=2,weights=none,s={},t={},rrdepth=100", s, t);
+        const Mean mean = mean_of_text_runs(sphere(kAlbedo), settings_of(GetParam(), integrator, 64, 0), kRuns);
+        EXPECT_LT(std::abs(mean.value() - right), student_threshold(kAlpha, kRuns - 1) * mean.error() + 1e-5)
+            << "s = " << s << ", t = " << t << ": " << mean.value() << " +- " << mean.error() << ", right " << right;
+        EXPECT_LT(mean.error(), 0.01 * right) << "the test has no power";
+    }
+}
+
 // The weighted strategies are the parts of the whole: the same random numbers, up to the rounding of sums.
 TEST_P(Bidirectional, StrategiesAddUpToTheWhole) {
     const std::string text = sphere(0.5);
@@ -120,7 +136,8 @@ TEST_P(Bidirectional, ChoicesChangeNoMean) {
     for (int k = 0; k <= 6; ++k) right += std::pow(0.7, k);
     constexpr uint32_t kRuns = 16;
     for (const char* choice : {"connections=0", "connections=1", "connections=2", "lightpaths=7", "lightpaths=1000",
-                               "weights=power", "connections=0,weights=power", "rrdepth=0"}) {
+                               "weights=power", "connections=0,weights=power", "rrdepth=0", "cache=1", "cache=3",
+                               "cache=2,weights=power", "cache=2,lightpaths=7"}) {
         const std::string integrator = fmt::format("bdpt:maxdepth=6,{}", choice);
         const Mean mean = mean_of_text_runs(text, settings_of(GetParam(), integrator, 16, 0), kRuns);
         EXPECT_LT(std::abs(mean.value() - right), student_threshold(kAlpha, kRuns - 1) * mean.error() + 1e-4)
@@ -231,16 +248,23 @@ TEST(Bidirectional, UnweightedStrategiesAreShownOneByOne) {
     EXPECT_THROW(render_text(sphere(0.5), settings_of("cpu", "bdpt:strategies=on,maxdepth=100", 1, 0)), InputError);
 }
 
+TEST(Bidirectional, TheCacheChoosesVerticesItself) {
+    EXPECT_THROW(render_text(sphere(0.5), settings_of("cpu", "bdpt:cache=1,connections=2", 1, 0)), InputError);
+    EXPECT_THROW(render_text(sphere(0.5), settings_of("cpu", "vcm:cache=1,connections=0", 1, 0)), InputError);
+}
+
 // ---- The same image --------------------------------------------------------------------------------------------------
 
 // One path that differs by a rounding may reach several pixels: the share of docs/determinism.md, twice.
 TEST(Bidirectional, SameOnEveryBackendAndThread) {
     for (const char* name : {"reference/diffuse", "reference/dielectric-rough", "analytic/box-half"})
         expect_same_on_every_backend(name, settings_of("cpu", "bdpt:maxdepth=5", 3, 32), 0.996);
+    expect_same_on_every_backend("reference/diffuse", settings_of("cpu", "bdpt:maxdepth=5,cache=2", 3, 32), 0.996);
 }
 
 TEST_P(Bidirectional, CropsArePartsOfTheWhole) {
     expect_crop_is_part_of_the_whole("reference/diffuse", settings_of(GetParam(), "bdpt", 2, 0));
+    expect_crop_is_part_of_the_whole("reference/diffuse", settings_of(GetParam(), "bdpt:cache=1", 2, 0));
 }
 
 }  // namespace

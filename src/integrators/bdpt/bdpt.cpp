@@ -27,14 +27,9 @@ class Bdpt : public Integrator {
             throw InputError("error: counts=auto chooses among strategies, and s and t name one: give either");
         if (params.counts != 0 && params.strategies != 0)
             throw InputError("error: counts=auto leaves strategies out, and strategies=on shows all: give either");
-        BidirectionalOptions options{.name = "bdpt",
-                                     .maxdepth = params.maxdepth,
-                                     .rrdepth = params.rrdepth,
-                                     .lightpaths = params.lightpaths,
-                                     .connections = params.connections,
-                                     .weights = params.weights,
-                                     .only_light = params.s,
-                                     .only_camera = params.t};
+        BidirectionalOptions options = connection_options("bdpt", params);
+        options.only_light = params.s;
+        options.only_camera = params.t;
         if (params.counts != 0) options = choose_counts(session, options);
         render_bidirectional(session, options);
         if (params.strategies != 0) render_strategies(session, options, params.maxdepth);

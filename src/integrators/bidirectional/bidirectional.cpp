@@ -86,6 +86,8 @@ class BidirectionalRender {
         pass_.maxdepth = options_.maxdepth;
         pass_.rrdepth = options_.rrdepth;
         pass_.connections = options_.connections;
+        pass_.cache = uint32_t(options_.cache);
+        pass_.samples = float(std::max(options_.cache, 1));
         pass_.weights = options_.weights;
         pass_.only_light = options_.only_light;
         pass_.only_camera = options_.only_camera;
@@ -249,6 +251,7 @@ class BidirectionalRender {
         run_light_paths(first, count);
         splatted_ = std::max(splatted_, first + count);
         kept_ = counters();
+        pass_.deepest = int(kept_[kernel::DEEPEST_VERTEX]);
         session_.photons.rays += kept_[kernel::LIGHT_RAYS];
         bool fits = true;
         if (kept_[kernel::LIGHT_VERTICES] > pass_.capacity)

@@ -16,6 +16,7 @@ struct BidirectionalOptions {
     int lightpaths = -1;                    // in each pass; -1: as many as the picture has pixels
     bool light_paths = true;                // false: none, whatever `lightpaths` says, which is path tracing
     int connections = -1;                   // of a camera vertex with a light path; -1: all
+    int cache = 0;                          // light paths to which it is connected at each depth; 0: one at all depths
     uint32_t weights = 0;                   // kernel::WEIGHTS_*
     int only_light = -1, only_camera = -1;  // strategy, as counts of vertices; -1: all
     uint32_t strategies = 0;                // kernel::STRATEGIES_*
@@ -26,6 +27,23 @@ struct BidirectionalOptions {
     // connections, what splats do, and what merging does.
     std::vector<glm::vec4>* shares = nullptr;
 };
+
+// Throws InputError if parameters contradict each other.
+void check_connections(const BidirectionalOptions& options);
+
+// Of an integrator that connects vertices, with the parameters of SUBPATH_PARAMS, CONNECTION_PARAMS and `weights`. Throws InputError.
+template <typename Params>
+BidirectionalOptions connection_options(const char* name, const Params& params) {
+    BidirectionalOptions options{.name = name,
+                                 .maxdepth = params.maxdepth,
+                                 .rrdepth = params.rrdepth,
+                                 .lightpaths = params.lightpaths,
+                                 .connections = params.connections,
+                                 .cache = params.cache,
+                                 .weights = params.weights};
+    check_connections(options);
+    return options;
+}
 
 // The number of light paths in each pass of a scene's picture.
 uint32_t light_path_count(const BidirectionalOptions& options, const Scene& scene);

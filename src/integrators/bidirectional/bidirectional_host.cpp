@@ -34,6 +34,14 @@ size_t splat_bytes(uint32_t pixels, const char* integrator) {
     return size_t(pixels) * kernel::SPLAT_WORDS * 4;
 }
 
+void check_connections(const BidirectionalOptions& options) {
+    if (options.cache > 0 && options.connections >= 0)
+        throw InputError(fmt::format(
+            "error: {} with cache={} connects to the vertices of many light paths, and connections={} chooses among "
+            "those of one: give either",
+            options.name, options.cache, options.connections));
+}
+
 uint32_t light_path_count(const BidirectionalOptions& options, const Scene& scene) {
     return options.lightpaths > 0 ? uint32_t(options.lightpaths) : scene.width() * scene.height();
 }

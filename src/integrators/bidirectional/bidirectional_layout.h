@@ -25,6 +25,8 @@ struct BidirectionalPass {
     int maxdepth;
     int rrdepth;
     int connections;  // of a camera vertex with its light path; negative: to all vertices
+    uint cache;       // light paths, chosen at random, to which it is connected at each depth; 0: to one, at all
+    int deepest;      // scattering vertices of the longest light path of the part
     uint weights;     // WEIGHTS_*
     int only_light;   // strategy to render, as counts of vertices; negative: any
     int only_camera;
@@ -37,6 +39,7 @@ struct BidirectionalPass {
     uint photon_capacity;
     uint sums_capacity;  // of photon_sums
     uint query_capacity;
+    float samples;  // of each strategy that connects two vertices, for each camera path: `cache`, or 1
     uint features;  // 1: camera paths add the features of their first hits to the film; 0: not again
     uint shares;    // 1: `shares` adds up what each class of strategies contributes
 };
@@ -55,9 +58,10 @@ CONST uint LIGHT_RAYS = 1u;
 CONST uint LIGHT_SPLATS = 2u;  // connections to the camera that were unoccluded
 CONST uint CONNECTIONS_TRIED = 3u;
 CONST uint CONNECTIONS_VISIBLE = 4u;
-CONST uint PHOTONS_KEPT = 5u;   // including those that did not fit
-CONST uint MOST_PHOTONS = 6u;   // of one path
-CONST uint MERGE_QUERIES = 7u;  // including those that did not fit
-CONST uint BIDIRECTIONAL_COUNTERS = 8u;
+CONST uint PHOTONS_KEPT = 5u;    // including those that did not fit
+CONST uint MOST_PHOTONS = 6u;    // of one path
+CONST uint MERGE_QUERIES = 7u;   // including those that did not fit
+CONST uint DEEPEST_VERTEX = 8u;  // depth of the deepest one that was stored
+CONST uint BIDIRECTIONAL_COUNTERS = 9u;
 
 #endif

@@ -12,7 +12,10 @@
 #define CONNECTION_PARAMS(P)                                                                                        \
     P(int, connections, -1, -1, 60000,                                                                              \
       "vertices of a light path to which each vertex of a camera path is connected, chosen at random; -1: all; 0: " \
-      "none, and weights know it")
+      "none, and weights know it")                                                                                  \
+    P(int, cache, 0, 0, 64,                                                                                         \
+      "light paths, chosen at random among all, to which each vertex of a camera path is connected at each depth "  \
+      "(light vertex cache); 0: the vertices of one light path, for the whole camera path")
 
 #define COUNTS_PARAMS(P)                                                                                             \
     P(uint, counts, 0, 0, 1,                                                                                         \

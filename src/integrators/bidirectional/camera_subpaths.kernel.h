@@ -21,6 +21,7 @@ BUFFER_RW(10, float, connected)  // of each pixel, if the pass wants shares: wha
 #include "core/kernel/camera_connect.h"
 #include "integrators/bidirectional/path_vertex.h"
 #include "integrators/bidirectional/connect.h"
+#include "integrators/bidirectional/partners.h"
 
 // Dimensions of a vertex, as those of `path`, and one for the choice of vertices to connect to.
 CONST uint BDPT_DIRECTION_AND_LIGHT = 0u;
@@ -30,36 +31,22 @@ CONST uint BDPT_ROULETTE = 6u;
 CONST uint BDPT_CONNECTIONS = 7u;
 CONST uint BDPT_VERTEX_DIMENSIONS = 8u;
 
-// Connects to all vertices of the light path that leave the path at most maxdepth scattering vertices, or to `connections` of them,
-// each with the same probability.
-FN Spectrum connect_to_path(IN(Subpath) path, IN(Surface) s, IN(Vertex) v, uint last, float u) {
-    BidirectionalPass pass = passes[0];
+// Connects to vertices of light paths.
+FN Spectrum connect_to_light_paths(IN(Subpath) path, IN(Surface) s, IN(Vertex) v, uint light_path, uint bits) {
+    Partners partners = partners_begin(light_path, path.walk.depth + 1, bits);
     Spectrum sum = Spectrum(0.0f);
-    uint slot = last;
-    uint count = 0u;
-    float chance = 1.0f;
-    int depth = path.walk.depth + 1;
-    for (uint turn = 0u; slot != NONE && turn < 65536u; ++turn) {
-        PathVertexRecord y = vertices[slot];
-        slot = path_vertex_previous(y);
-        if (path_vertex_depth(y) + depth > pass.maxdepth) continue;
-        if (!strategy_wanted(path_vertex_depth(y) + 1, depth + 1)) continue;
-        uint rank = path_vertex_rank(y);
-        if (count == 0u) {
-            count = rank;
-            if (pass.connections > 0 && uint(pass.connections) < count) chance = float(pass.connections) / float(count);
-        }
-        // Systematic sampling: of `count` vertices, those at which floor(rank chance + u) grows.
-        if (chance < 1.0f && floor(float(rank) * chance + u) == floor(float(rank - 1u) * chance + u)) continue;
+    while (next_partner(partners)) {
+        PathVertexRecord y = vertices[partners.found];
         LightEnd end;
         end.vertex = path_vertex(y, end.surface);
         end.direction = path_vertex_direction(y);
         end.throughput = path_vertex_throughput(y);
         end.mis = path_vertex_sums(y);
-        PATH_LOG(log_connects(uint(path_vertex_depth(y)), chance));
+        PATH_LOG(log_partner(partners.light_path));
+        PATH_LOG(log_connects(uint(path_vertex_depth(y)), partners.chance));
         sum += connect_to_vertex(path, s, v, end);
     }
-    return sum / chance;
+    return sum / partners.chance;
 }
 
 // Stores a vertex to be merged; the result is its slot.
@@ -79,7 +66,6 @@ KERNEL(camera_subpaths) {
     uvec2 local = film_pixel_of(index, w);
     uint light_path = film_pixel_number(local, w) % pass.paths;
     if (light_path < pass.first_path || light_path - pass.first_path >= pass.part_paths) return;
-    PATH_LOG(log_partner(light_path));
     uint at = local.y * w.width + local.x;
     CameraSample camera = camera_sample(w, local, 0u);
     Subpath path = camera_path_begin(camera.ray, pass.maxdepth);
@@ -117,9 +103,8 @@ KERNEL(camera_subpaths) {
                 radiance += connect_to_light(path, s, v, u_light, uvec2(u.z, u.w));
             }
             if (pass.connections != 0) {
-                float u_connections = sample_1d_at(camera.numbers, dimension + BDPT_CONNECTIONS);
-                Spectrum found =
-                    connect_to_path(path, s, v, last_vertices[light_path - pass.first_path], u_connections);
+                uint bits = sample_bits_1d_at(camera.numbers, dimension + BDPT_CONNECTIONS);
+                Spectrum found = connect_to_light_paths(path, s, v, light_path, bits);
                 radiance += found;
                 by_connections += found;
             }

@@ -102,6 +102,7 @@ FN Spectrum connect_to_vertex(IN(Subpath) path, IN(Surface) s, IN(Vertex) v, IN(
     uint h = heuristic();
     float others = mis_end(y.mis, forward * abs_dot(w, y.surface.ng) * inverse_d2, reverse_y, passes[0].eta, h) +
                    mis_end(path.mis, forward_y * abs_dot(w, s.ng) * inverse_d2, reverse, passes[0].eta, h);
+    others = others / connection_samples();
     float cosine_y = importance_cosine(y.direction, y.surface, y.vertex, -w);
     PATH_LOG(log_connection(y.surface.position, distance,
                             path.walk.throughput * f * f_y * through * y.throughput * (abs(wi.z) * cosine_y / d2),

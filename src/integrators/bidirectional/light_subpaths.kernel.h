@@ -48,6 +48,7 @@ KERNEL(light_subpaths) {
     uint rank = 0u;
     uint splatted = 0u;
     uint kept = 0u;
+    uint deepest = 0u;
     Sampler numbers = light_path_numbers(index, pass.number, pass.seed, pass.sampler_kind);
     Emission start;
     PATH_LOG(log_path(LOG_LIGHT_PATH, index, 0u));
@@ -73,6 +74,7 @@ KERNEL(light_subpaths) {
                 if (depth < pass.maxdepth && pass.connections != 0) {
                     uint place = ATOMIC_ADD_U32(counters[LIGHT_VERTICES], 1u);
                     rank += 1u;
+                    deepest = uint(depth);
                     if (place < pass.capacity)
                         vertices[place] = path_vertex_record(path.walk.ray, s, path.walk.throughput, path.mis,
                                                              uint(depth), rank, slot);
@@ -90,5 +92,6 @@ KERNEL(light_subpaths) {
     last_vertices[index - pass.first_path] = slot;
     ATOMIC_ADD_U32(counters[LIGHT_RAYS], traced_rays[0]);
     if (kept > counters[MOST_PHOTONS]) ATOMIC_MAX_U32(counters[MOST_PHOTONS], kept);
+    if (deepest > counters[DEEPEST_VERTEX]) ATOMIC_MAX_U32(counters[DEEPEST_VERTEX], deepest);
     if (splatted != 0u) ATOMIC_ADD_U32(counters[LIGHT_SPLATS], splatted);
 }

@@ -42,6 +42,7 @@ FN void subpath_arrives(INOUT(Subpath) path, IN(Surface) s) {
     // What joins this vertex to the previous one: next-event estimation or a splat at the first vertex, a connection at others.
     if (passes[0].strategies == STRATEGIES_MERGING || (passes[0].connections == 0 && path.walk.depth > 0))
         path.mis.a = 0.0f;
+    if (path.walk.depth > 0) path.mis.a *= connection_samples();
 }
 
 // Continues from the vertex at s in the sampled direction; `density` is that of bsdf_sample_density. False if the path ends.

@@ -17,6 +17,9 @@ FN float mis_weight(float others) { return passes[0].weights == WEIGHTS_NONE ? 1
 // Light paths that may reach a pixel, over its camera rays: the density of strategies t = 1 has this factor.
 FN float lens_samples() { return float(passes[0].paths) / passes[0].film_density; }
 
+// How often a camera path is connected to a light path's vertex by each strategy that does so: their densities have this factor.
+FN float connection_samples() { return mis_term(passes[0].samples, heuristic()); }
+
 FN bool strategy_wanted(int from_light, int from_camera) {
     int s = passes[0].only_light;
     int t = passes[0].only_camera;

@@ -13,15 +13,10 @@ class Vcm : public Integrator {
     ErrorRate error_rate() const override { return ErrorRate::of_photons(double(params.alpha)); }
 
     void render(RenderSession& session) override {
-        BidirectionalOptions options{.name = "vcm",
-                                     .maxdepth = params.maxdepth,
-                                     .rrdepth = params.rrdepth,
-                                     .lightpaths = params.lightpaths,
-                                     .connections = params.connections,
-                                     .weights = params.weights,
-                                     .radius = double(params.radius),
-                                     .radius_share = double(params.share),
-                                     .alpha = double(params.alpha)};
+        BidirectionalOptions options = connection_options("vcm", params);
+        options.radius = double(params.radius);
+        options.radius_share = double(params.share);
+        options.alpha = double(params.alpha);
         if (params.counts != 0) options = choose_counts(session, options);
         render_bidirectional(session, options);
     }
