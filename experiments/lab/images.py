@@ -1,5 +1,6 @@
 """Images of runs: reading EXR, error and FLIP maps, pictures for figures, and the viewer's entries."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,7 +14,7 @@ from lab.sections import Image
 from lab.store import Store
 
 
-def read_exr(path: Path, channels: str = "RGB") -> np.ndarray:
+def read_exr(path: Path, channels: Sequence[str] = "RGB") -> np.ndarray:
     """An EXR as float32, height x width x len(channels); a crop's data window only."""
     with OpenEXR.File(str(path), separate_channels=True) as file:
         found = file.channels()
@@ -25,6 +26,15 @@ def write_map(path: Path, values: np.ndarray) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
     with OpenEXR.File(header, {"Y": np.ascontiguousarray(values, dtype=np.float32)}) as file:
+        file.write(str(path))
+
+
+def write_picture(path: Path, image: np.ndarray) -> None:
+    """A picture of scene-linear light, height x width x 3, as halfs."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+    planes = {name: np.ascontiguousarray(image[..., i], dtype=np.float16) for i, name in enumerate("RGB")}
+    with OpenEXR.File(header, planes) as file:
         file.write(str(path))
 
 
@@ -64,7 +74,8 @@ class Gallery:
     store: Store
     folder: Path  # the target's
 
-    def _relative(self, path: Path) -> str:
+    def relative(self, path: Path) -> str:
+        """A file of the reproduction, as sections name it."""
         return str(path.resolve().relative_to(self.store.folder.resolve()))
 
     def of_run(self, name: str, method: str, run: Run) -> Image:
@@ -74,14 +85,14 @@ class Gallery:
         facts = f"{statistics['passes']} passes, {statistics['wall_s']:.1f} s"
         if statistics["photons_emitted"]:
             facts += f", {statistics['photons_emitted']:.3g} photons"
-        entry = Image(name, method, self._relative(self.store.image(run)), " ".join(record["command"]), key, facts)
+        entry = Image(name, method, self.relative(self.store.image(run)), " ".join(record["command"]), key, facts)
         if run.reference:
             image, reference = read_exr(self.store.image(run)), read_exr(self.reference_path(run.reference))
             entry.errors = {word: record["compare"][word] for word in ("relmse", "relmse_trimmed", "mape")}
             values, entry.errors["flip"] = flip_map(image, reference)
             path = self.folder / "maps" / f"flip-{key}.exr"
             write_map(path, values)
-            entry.flip_map = self._relative(path)
+            entry.flip_map = self.relative(path)
         return entry
 
     def of_reference(self, reference: Reference) -> Image:
@@ -94,7 +105,7 @@ class Gallery:
         copy.parent.mkdir(parents=True, exist_ok=True)
         if not copy.exists() or copy.read_bytes() != source.read_bytes():
             copy.write_bytes(source.read_bytes())
-        return Image("reference", "reference", self._relative(copy), f"({reference.image})", "", reference.by)
+        return Image("reference", "reference", self.relative(copy), f"({reference.image})", "", reference.by)
 
     def reference_path(self, reference: Run | str) -> Path:
         """Where a reference's image lies."""

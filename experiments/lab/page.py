@@ -143,6 +143,8 @@ def _read_section(path: Path, output: Path) -> dict:
         for column in table["columns"]:
             values = [row[column["key"]] for row in table["rows"] if row.get(column["key"]) is not None]
             column["numeric"] = bool(values) and all(_is_number(value) for value in values)
+    for one in section.get("figures", []):
+        one["href"] = quote(os.path.relpath(path.parent / one["file"], output))
     for download in section["downloads"]:
         download["href"] = quote(os.path.relpath(path.parent / download["file"], output))
     return section

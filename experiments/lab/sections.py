@@ -133,6 +133,14 @@ class Download:
 
 
 @dataclass
+class Figure:
+    """A picture beside section.json that the page shows as it is; its file is among the downloads, too."""
+
+    file: str
+    title: str
+
+
+@dataclass
 class Section:
     """Everything that one target says. `experiment` is its folder; `text`: paragraphs, plain but for `code`."""
 
@@ -146,6 +154,7 @@ class Section:
     tables: list[Table] = field(default_factory=list)
     downloads: list[Download] = field(default_factory=list)
     answer: Table | None = None  # what the page begins with
+    figures: list[Figure] = field(default_factory=list)
 
     def write(self, folder: Path) -> None:
         """Save section.json, verdict.json and the tables as LaTeX into `folder`."""
