@@ -1,5 +1,5 @@
 // backends_test at the full size of the pictures and with 512 samples per pixel, the larger scenes with one, and photon mapping
-// in all scenes: takes minutes.
+// and methods with light paths in all scenes: takes an hour where shaders are compiled anew.
 #include "support/agreement.h"
 
 #include <gtest/gtest.h>
@@ -53,6 +53,29 @@ TEST_P(PhotonMappingLongTest, TwoPassesAreTheSameOnVulkan) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, PhotonMappingLongTest, testing::ValuesIn(small_scenes()),
                          [](const auto& info) { return test_name(info.param); });
+
+// The same for methods with light paths: one that takes another way at an edge may reach many pixels, and a chain never comes back.
+class LightPathsLongTest : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
+
+TEST_P(LightPathsLongTest, TwoPassesAreTheSameOnVulkan) {
+    const auto& [scene, integrator] = GetParam();
+    RenderSettings settings;
+    settings.integrator = integrator;
+    settings.resolution = {{32, 32}};
+    settings.samples = 2;
+    settings.seed = 25;
+    expect_agreement(scene, "vulkan", settings, 1e-5, integrator.starts_with("mlt") ? 0.95 : 0.99);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, LightPathsLongTest,
+                         testing::Combine(testing::ValuesIn(small_scenes()),
+                                          testing::Values("light:maxdepth=8", "bdpt:maxdepth=8", "vcm:maxdepth=8",
+                                                          "mlt:maxdepth=8,chains=64")),
+                         [](const auto& info) {
+                             const std::string& integrator = std::get<1>(info.param);
+                             return test_name(std::get<0>(info.param) + "_" +
+                                              integrator.substr(0, integrator.find(':')));
+                         });
 
 }  // namespace
 }  // namespace lampyris::test
