@@ -1,4 +1,4 @@
-"""References that share their photons with what they judge, beside estimators that have none: do the means agree?"""
+"""References that share their photons with what they judge, beside other estimators: do the means agree?"""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -93,7 +93,7 @@ def verdict_of(found: list[Agreement]) -> Verdict:
     told = "; ".join(f"{one.scene.title}, {one.label}: {one.ratio.value:.3f}" for one in found)
     off = [f"{one.label} on {one.scene.title}" for one in found if not one.agrees]
     return Verdict(
-        "Estimators without photons have the references' mean",
+        "Other estimators have the references' mean",
         f"Mean luminance over that of the reference: {told}" if told else "not measured",
         judge(one.agrees for one in found),
         f"the interval of confidence {CONFIDENCE:g}, widened by {ROUNDING:g}, must contain 1"
@@ -123,7 +123,8 @@ def report(plan: Plan, store: Store, folder: Path) -> Section:
         [
             "The references of scenes whose light arrives through glass and water are rendered with photons, as the "
             "methods that they judge. Path tracing and bidirectional path tracing find all of that light, since every "
-            "lamp has an area, but too rarely for a picture: pixels cannot be compared, means can.",
+            "lamp has an area, but too rarely for a picture, and `vcm` finds the rest with fireflies: pixels cannot be "
+            "compared, means can.",
             f"{plan['seeds']} seeds of {plan['time_s']} s for each method.",
         ],
         [verdict_of(found)],
