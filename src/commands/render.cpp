@@ -81,6 +81,27 @@ class ConsoleObserver final : public RenderObserver {
         display_->show(progress);
     }
 
+    double wants_image_every() const override { return replays() || write_failed_ ? 0.0 : options_.every_s; }
+    void image_so_far(const RenderOutcome& outcome) override {
+        try {
+            write(outcome);
+        } catch (const MachineError& error) {
+            write_failed_ = true;  // and is tried again at the end
+            tell("warning: the image so far is not written any more: {}\n", error.what());
+        }
+    }
+
+    void write(const RenderOutcome& outcome) const {
+        for (const std::string& output : outputs_) {
+            const WriteResult written = write_image(output, outcome.image, options_.write);
+            if (written.clamped > 0)
+                tell("warning: {}: {} numbers were larger than a half float holds and were cut to 65504\n", output,
+                     written.clamped);
+        }
+        if (!options_.statistics_file.empty())
+            write_file_atomically(options_.statistics_file, statistics_json(outcome.record).dump(2) + "\n");
+    }
+
     const std::vector<std::string>& outputs() const { return outputs_; }
 
  private:
@@ -90,6 +111,7 @@ class ConsoleObserver final : public RenderObserver {
     CompileDisplay compile_display_;
     std::optional<ProgressDisplay> display_;
     std::vector<std::string> outputs_;
+    bool write_failed_ = false;
 };
 
 int render(const RenderOptions& options) {
@@ -99,14 +121,7 @@ int render(const RenderOptions& options) {
         print("{}", replay_text(outcome, *options.request.replay));
         return int(ExitCode::kDone);
     }
-    for (const std::string& output : observer.outputs()) {
-        const WriteResult written = write_image(output, outcome.image, options.write);
-        if (written.clamped > 0)
-            tell("warning: {}: {} numbers were larger than a half float holds and were cut to 65504\n", output,
-                 written.clamped);
-    }
-    if (!options.statistics_file.empty())
-        write_file_atomically(options.statistics_file, statistics_json(outcome.record).dump(2) + "\n");
+    observer.write(outcome);
     if (!options.quiet) print_summary(outcome.record, observer.outputs());
     return int(outcome.record.ended == RenderEnd::kInterrupted ? ExitCode::kInterrupted : ExitCode::kDone);
 }

@@ -81,7 +81,7 @@ void RenderOptions::tell_what_a_replay_ignores() const {
     for (const auto& [option, given] :
          {std::pair{"--output", !outputs.empty()}, std::pair{"--stats", !statistics_file.empty()},
           std::pair{"--crop", !texts.crop.empty()}, std::pair{"--passes", texts.passes.has_value()},
-          std::pair{"--time", !texts.time.empty()},
+          std::pair{"--time", !texts.time.empty()}, std::pair{"--every", !texts.every.empty()},
           std::pair{"--target-error", request.limits.target_error.has_value()}})
         if (given) tell("note: {} has no effect: --replay prints one sample of one pixel\n", option);
 }
@@ -105,6 +105,7 @@ void RenderOptions::finish() {
         tell_what_a_replay_ignores();
     }
     BudgetLimits& limits = request.limits;
+    if (!texts.every.empty()) request.checkpoint_every_s = every_s = parse_duration(texts.every);
     if (!texts.time.empty()) limits.seconds = parse_duration(texts.time);
     if (!texts.max_memory.empty()) request.device_options.max_memory = parse_size(texts.max_memory);
     for (const auto& [option, count] : {std::pair{"--spp", texts.spp}, std::pair{"--passes", texts.passes}})
@@ -182,6 +183,18 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
         ->type_name("REF.exr");
     command.add_option("--stats", o.statistics_file, "Write statistics of the rendering as JSON")
         ->type_name("FILE.json");
+    command
+        .add_option("--checkpoint", o.request.checkpoint,
+                    "Keep the state of the rendering in this file, so that --resume goes on after a crash")
+        ->type_name("FILE")
+        ->check(not_empty);
+    command.add_flag("--resume", o.request.resume, "Go on from the checkpoint, if there is one");
+    command
+        .add_option("--every", o.texts.every,
+                    "Write the image and statistics so far, and the checkpoint, this often: 60s, 5min (default of "
+                    "checkpoints: 60s)")
+        ->type_name("DURATION")
+        ->check(not_empty);
     command.add_option("--plugin", o.plugins, "Load a plugin; may be given several times")->type_name("FILE.so");
     command.add_flag("--skip-unsupported", o.request.skip_unsupported,
                      "Leave out what Lampyris does not simulate, and list it");

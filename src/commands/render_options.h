@@ -17,6 +17,7 @@ struct RenderOptions {
     std::vector<std::string> outputs;
     WriteOptions write;
     std::string statistics_file;
+    double every_s = 0.0;  // between images of what is done so far; 0: none
     std::vector<std::string> plugins;
     bool quiet = false;
 
@@ -24,7 +25,7 @@ struct RenderOptions {
     void finish();
     void tell_what_a_replay_ignores() const;
     struct Texts {
-        std::string scene, resolution, crop, time, max_memory, replay;
+        std::string scene, resolution, crop, time, max_memory, replay, every;
         std::vector<std::string> settings;  // SECTION.KEY=VALUE
         std::optional<int64_t> spp, passes;
     } texts;

@@ -12,7 +12,7 @@ namespace lampyris::test {
 namespace {
 
 TEST(ReplayLong, EventsAddUpToThePixelOnVulkan) {
-    if (std::ranges::count(usable_backends(), "vulkan") == 0) GTEST_SKIP() << "no Vulkan device";
+    ASSERT_EQ(std::ranges::count(usable_backends(), "vulkan"), 1) << "no Vulkan device";
     const std::shared_ptr<Device> device = create_device("vulkan", {});
     std::set<uint32_t> seen;
     for (int y = 2; y < 16; y += 6)

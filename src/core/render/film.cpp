@@ -84,6 +84,13 @@ void Film::attach_bias(BufferHandle buffer, double confidence) {
     confidence_ = confidence;
 }
 
+void Film::restore(const std::vector<kernel::FilmPixel>& pixels) {
+    if (pixels.size() != pixel_count())
+        throw InputError(
+            fmt::format("error: the checkpoint has {} pixels, the picture {}", pixels.size(), pixel_count()));
+    buffer_->upload(pixels.data(), pixels.size() * sizeof(kernel::FilmPixel));
+}
+
 void Film::download() {
     buffer_->download(pixels_.data(), pixels_.size() * sizeof(kernel::FilmPixel));
     if (bias_buffer_) bias_buffer_->download(biases_.data(), biases_.size() * sizeof(kernel::FilmBias));

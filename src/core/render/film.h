@@ -43,6 +43,8 @@ class Film {
     // equation 17).
     void attach_bias(BufferHandle buffer, double confidence);
 
+    // The sums of an earlier rendering, in place of none. Throws InputError if these are other pixels.
+    void restore(const std::vector<kernel::FilmPixel>& pixels);
     void download();  // copies the sums from the device; the functions below use the last download
     FilmSummary summary() const;
     std::vector<float> rgb() const;  // [height][width][3]

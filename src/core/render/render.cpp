@@ -1,6 +1,8 @@
 #include "core/render/render.h"
 
+#include "core/base/version.h"
 #include "core/image/image_io.h"
+#include "core/render/checkpoint.h"
 #include "core/render/integrator_choice.h"
 #include "core/render/statistics.h"
 #include "core/scene/limits.h"
@@ -9,6 +11,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 namespace lampyris {
 namespace {
@@ -29,6 +32,11 @@ void check(const RenderRequest& request) {
         throw InputError("error: a limit of passes or samples must be at least 1");
     if (limits.seconds && !(*limits.seconds > 0.0)) throw InputError("error: a time limit must be above 0 seconds");
     if (limits.target_error && !(*limits.target_error > 0.0)) throw InputError("error: --target-error must be above 0");
+    if (request.resume && request.checkpoint.empty())
+        throw InputError("error: --resume goes on from a checkpoint: name it with --checkpoint FILE");
+    if (!request.checkpoint.empty() && request.replay)
+        throw InputError("error: --replay renders one sample of one pixel, and has no checkpoint");
+    if (!(request.checkpoint_every_s > 0.0)) throw InputError("error: --every must be above 0 seconds");
 }
 
 // The request's settings of the integrator. `media` is removed: every integrator accepts it, and the scene's builder uses it.
@@ -110,6 +118,36 @@ std::vector<float> read_reference(const std::string& file, const BuiltScene& bui
     return std::move(image.pixels);
 }
 
+// Writes the checkpoint of a rendering, if it has one. What cannot be written is told, and the rendering goes on.
+class CheckpointKeeper {
+ public:
+    CheckpointKeeper(const RenderRequest& request, RenderObserver& observer, RenderIdentity identity)
+        : request_(request), observer_(observer), identity_(std::move(identity)) {}
+
+    bool is_due() const { return seconds_since(last_) >= request_.checkpoint_every_s; }
+    // The state at the session's last look at the film, if it has not been written yet.
+    void keep(const RenderSession& session, const Film& film, const std::vector<ConvergencePoint>& convergence,
+              double total_s) {
+        if (request_.checkpoint.empty() || !session.last_look()) return;
+        const SessionState& state = *session.last_look();
+        if (state.passes == written_passes_) return;
+        last_ = Clock::now();
+        try {
+            write_checkpoint(request_.checkpoint, {identity_, state, convergence, total_s, film.pixels()});
+            written_passes_ = state.passes;
+        } catch (const MachineError& error) {
+            observer_.warning(fmt::format("warning: the checkpoint is not up to date: {}", error.what()));
+        }
+    }
+
+ private:
+    const RenderRequest& request_;
+    RenderObserver& observer_;
+    const RenderIdentity identity_;
+    uint64_t written_passes_ = 0;
+    Clock::time_point last_ = Clock::now();
+};
+
 // Clears the interruption, however a run ends.
 class EndOfInterruption {
  public:
@@ -138,13 +176,18 @@ struct Rendering::State {
     std::string unseen_error;
     BudgetLimits limits;
     std::optional<std::vector<float>> reference;
+    std::optional<Checkpoint> resumed;
     double scene_s = 0.0, setup_s = 0.0;
     std::shared_ptr<Device> device;
     DeviceSceneHandle device_scene;
 
  private:
     void load();
+    RenderIdentity identity(uint32_t seed) const;
     RunRecord record_of(const RenderSession& session) const;
+    // The film as it was last downloaded.
+    RenderOutcome outcome_of(const RenderSession& session, const Film& film,
+                             const std::vector<ConvergencePoint>& convergence, double total_s) const;
 };
 
 Rendering::State::State(RenderRequest wanted, RenderObserver* watching)
@@ -170,6 +213,15 @@ Rendering::State::State(RenderRequest wanted, RenderObserver* watching)
     observer.ready({loaded.scene, loaded.settings, limits});
     if (!request.reference.empty()) reference = read_reference(request.reference, loaded);
     device = request.device ? request.device : create_device(request.backend, request.device_options);
+    if (!request.checkpoint.empty()) {
+        check_checkpoint_file(request.checkpoint, request.resume);
+        if (request.resume) resumed = read_checkpoint(request.checkpoint);
+        if (resumed)
+            check_same_rendering(request.checkpoint, resumed->identity, identity(loaded.settings.seed));
+        else if (request.resume)
+            observer.note(
+                fmt::format("there is no checkpoint '{}' yet: the rendering begins anew", request.checkpoint));
+    }
     device_scene = device->upload(loaded.scene);
     setup_s = seconds_since(start);
 }
@@ -208,35 +260,83 @@ RenderOutcome Rendering::State::run(uint32_t seed) {
     std::optional<PathLogger> path_log;
     if (request.replay) session.path_log = &path_log.emplace(*device);
     session.on_note = [&](const std::string& text) { observer.note(text); };
-    RenderOutcome outcome;
+    std::vector<ConvergencePoint> convergence;
+    double earlier_s = setup_s;  // before this run
+    if (resumed) {
+        film.restore(resumed->film);
+        convergence = std::move(resumed->convergence);
+        earlier_s += resumed->total_s;
+        session.go_on_from(std::move(resumed->session));
+        resumed.reset();  // a second run starts afresh
+    }
+    session.keeps_looks = !request.checkpoint.empty();
+    const auto total_s = [&] { return earlier_s + seconds_since(run_start); };
+    CheckpointKeeper keeper(request, observer, identity(seed));
+    Clock::time_point last_image = run_start;
     session.on_progress = [&](const RenderProgress& progress, const Film& current) {
-        ConvergencePoint point{progress.wall_s,
-                               progress.passes,
-                               progress.estimated_error,
-                               progress.forecast,
-                               !progress.unstable.empty(),
-                               {}};
-        if (reference) point.against_reference = measure(current.rgb(), *reference);
-        outcome.record.convergence.push_back(point);
+        if (convergence.empty() || convergence.back().passes < progress.passes) {
+            ConvergencePoint point{progress.wall_s,
+                                   progress.passes,
+                                   progress.estimated_error,
+                                   progress.forecast,
+                                   !progress.unstable.empty(),
+                                   {}};
+            if (reference) point.against_reference = measure(current.rgb(), *reference);
+            convergence.push_back(point);
+        }
         observer.progress(progress, current);
+        if (keeper.is_due()) keeper.keep(session, current, convergence, total_s());
+        const double every = observer.wants_image_every();
+        if (every > 0.0 && !progress.finished && seconds_since(last_image) >= every) {
+            observer.image_so_far(outcome_of(session, current, convergence, total_s()));
+            last_image = Clock::now();
+        }
     };
     try {
         chosen.integrator->render(session);
     } catch (const Cancelled&) {
         session.pass_was_cancelled();
     }
+    keeper.keep(session, film, convergence, total_s());  // before the film gets a part of a pass that was cut short
     film.download();
-    std::vector<ConvergencePoint> convergence = std::move(outcome.record.convergence);
+    RenderOutcome outcome = outcome_of(session, film, convergence, total_s());
+    outcome.pixels = film.take_pixels();
+    if (path_log) outcome.paths = path_log->log();
+    return outcome;
+}
+
+RenderOutcome Rendering::State::outcome_of(const RenderSession& session, const Film& film,
+                                           const std::vector<ConvergencePoint>& convergence, double total_s) const {
+    RenderOutcome outcome;
     outcome.record = record_of(session);
-    outcome.record.convergence = std::move(convergence);
-    outcome.record.total_s = setup_s + seconds_since(run_start);
+    outcome.record.convergence = convergence;
+    outcome.record.total_s = total_s;
     outcome.image = film.image();
     for (const ImageLayer& layer : session.layers)
         outcome.image.add_channels({layer.name + ".R", layer.name + ".G", layer.name + ".B"}, layer.rgb);
     outcome.image.metadata = image_metadata(outcome.record);
-    outcome.pixels = film.take_pixels();
-    if (path_log) outcome.paths = path_log->log();
     return outcome;
+}
+
+RenderIdentity Rendering::State::identity(uint32_t seed) const {
+    const auto& crop = loaded.settings.crop;
+    RenderIdentity identity{
+        {"version", version()},
+        {"scene", fmt::format("{:016x}", loaded.scene.hash)},
+        {"resolution", fmt::format("{}x{}", loaded.scene.width(), loaded.scene.height())},
+        {"crop", fmt::format("{}", fmt::join(crop, ","))},
+        {"integrator", chosen.name},
+        {"photon map", chosen.integrator->uses_photon_map() ? chosen.photon_map : ""},
+        {"sampler", loaded.settings.sampler},
+        {"seed", std::to_string(seed)},
+        {"eye samples", std::to_string(eye_samples)},
+        {"first pass", std::to_string(request.first_pass)},
+        {"media", loaded.settings.media ? "on" : "off"},
+        {"backend", device->backend()},
+    };
+    for (const auto& [name, value] : show_parameters(chosen.integrator->parameters(), *chosen.fields))
+        identity.emplace_back(fmt::format("integrator.{}", name), value);
+    return identity;
 }
 
 RunRecord Rendering::State::record_of(const RenderSession& session) const {

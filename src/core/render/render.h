@@ -49,7 +49,10 @@ struct RenderRequest {
     // The same as limits.passes, except for integrators whose passes share their eye samples: there it is the number of those.
     std::optional<uint32_t> samples_per_pixel;
 
-    std::string reference;                     // an image file: the convergence then includes the error against it
+    std::string reference;             // an image file: the convergence then includes the error against it
+    std::string checkpoint;            // a file that is kept up to date, so that nothing is lost (docs/checkpoints.md)
+    double checkpoint_every_s = 60.0;  // and at the end
+    bool resume = false;               // go on from the checkpoint, if there is one
     std::optional<std::array<int, 3>> replay;  // x, y, pass: one sample of one pixel, alone
     uint64_t first_pass = 0;                   // number of the first pass
     uint32_t max_slice = 0;  // maximum of passes in a slice; 0: as many as take a fraction of a second
@@ -61,6 +64,15 @@ struct RenderPlan {
     const Scene& scene;
     const SceneSettings& settings;  // as the request changes them
     const BudgetLimits& limits;     // the limits in force
+};
+
+struct RenderOutcome {
+    // R, G, B, the features that docs/images.md lists, and its provenance as metadata. If the rendering was interrupted during
+    // the first pass (record.progress.passes is 0), the image is black or incomplete.
+    Image image;
+    RunRecord record;
+    std::vector<kernel::FilmPixel> pixels;  // the sums behind the image
+    PathLog paths;                          // of a replay
 };
 
 // Receives events while a scene is rendered, in the rendering thread, and may interrupt it (Watch::interrupt). An exception
@@ -75,15 +87,9 @@ class RenderObserver : public Watch {
     virtual void ready([[maybe_unused]] const RenderPlan& plan) {}
     // After each slice of passes that ends at a power of two, after the last one, and at least every two seconds.
     virtual void progress([[maybe_unused]] const RenderProgress& progress, [[maybe_unused]] const Film& film) {}
-};
-
-struct RenderOutcome {
-    // R, G, B, the features that docs/images.md lists, and its provenance as metadata. If the rendering was interrupted during
-    // the first pass (record.progress.passes is 0), the image is black or incomplete.
-    Image image;
-    RunRecord record;
-    std::vector<kernel::FilmPixel> pixels;  // the sums behind the image
-    PathLog paths;                          // of a replay
+    // What there is after so many seconds, and so on, without `pixels`: for a picture to look at meanwhile. 0: none.
+    virtual double wants_image_every() const { return 0.0; }
+    virtual void image_so_far([[maybe_unused]] const RenderOutcome& outcome) {}
 };
 
 RenderOutcome render(const RenderRequest& request);

@@ -1,11 +1,15 @@
 #include "core/render/render_session.h"
 
+#include "core/base/error.h"
 #include "core/base/watch.h"
 #include "core/render/sample_slices.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace lampyris {
@@ -27,7 +31,61 @@ kernel::FilmWindow RenderSession::window(uint32_t first, uint32_t samples) const
     return {pixels.x, pixels.y, pixels.z, pixels.w, first, samples, seed, sampler};
 }
 
+void RenderSession::keep(const std::string& name, const BufferHandle& buffer) {
+    keep_part({name, buffer, nullptr, buffer->size()});
+}
+
+void RenderSession::keep_part(KeptPart part) {
+    if (went_on_from_) {
+        const auto& parts = went_on_from_->parts;
+        const auto found = std::ranges::find(parts, part.name, &SessionState::Part::name);
+        if (found == parts.end() || found->bytes.size() != part.bytes)
+            throw InputError(fmt::format("error: the checkpoint cannot be resumed: its \"{}\" is {}", part.name,
+                                         found == parts.end() ? "missing" : "of another size"));
+        if (part.buffer)
+            part.buffer->upload(found->bytes.data(), part.bytes);
+        else
+            std::memcpy(part.value, found->bytes.data(), part.bytes);
+    }
+    kept_.push_back(std::move(part));
+}
+
+void RenderSession::go_on_from(SessionState state) {
+    progress_.passes = state.passes;
+    progress_.wall_s = last_look_s_ = state.wall_s;
+    history_ = state.history;
+    went_on_from_ = std::move(state);
+}
+
+SessionState RenderSession::state() const {
+    SessionState now{progress_.passes, progress_.wall_s, history_, phases_, counts_, photons, {}};
+    for (const KeptPart& part : kept_) {
+        std::vector<std::byte> bytes(part.bytes);
+        if (part.buffer)
+            part.buffer->download(bytes.data(), bytes.size());
+        else
+            std::memcpy(bytes.data(), part.value, bytes.size());
+        now.parts.push_back({part.name, std::move(bytes)});
+    }
+    return now;
+}
+
+// The integrator is ready. What it did for that, it had done before: those counts are the checkpoint's.
+void RenderSession::begin_to_go_on() {
+    phases_ = went_on_from_->phases;
+    counts_ = went_on_from_->counts;
+    const PhotonStatistics& before = went_on_from_->photons;
+    photons.emitted = before.emitted;
+    photons.stored = before.stored;
+    photons.lost = before.lost;
+    photons.rays = before.rays;
+    went_on_from_.reset();
+    apply_limits();
+    look();
+}
+
 uint32_t RenderSession::next_passes() {
+    if (went_on_from_) begin_to_go_on();
     if (current_watch().interrupted()) interrupted_ = true;
     if (interrupted_ || progress_.finished) return 0;
     uint64_t count = 1;
@@ -54,18 +112,26 @@ void RenderSession::passes_finished(uint32_t count) {
     progress_.passes += count;
     progress_.wall_s += seconds;
     seconds_per_pass_ = seconds / count;
+    apply_limits();
+    if (current_watch().interrupted()) interrupted_ = true;
+    const bool due = progress_.finished || interrupted_ || std::has_single_bit(progress_.passes) ||
+                     progress_.wall_s - last_look_s_ >= kLookSeconds;
+    if (due) look();
+}
+
+void RenderSession::apply_limits() {
     if (limits_.passes && progress_.passes >= *limits_.passes) progress_.finished = true;
     // The next pass must fit, or the limit would be exceeded by half a pass on average.
     if (limits_.seconds && progress_.wall_s + 0.5 * seconds_per_pass_ >= *limits_.seconds) progress_.finished = true;
-    if (current_watch().interrupted()) interrupted_ = true;
-    const bool look = progress_.finished || interrupted_ || std::has_single_bit(progress_.passes) ||
-                      progress_.wall_s - last_look_s_ >= kLookSeconds;
-    if (!look) return;
+}
+
+void RenderSession::look() {
     last_look_s_ = progress_.wall_s;
     film.download();
     const FilmSummary summary = film.summary();
     progress_.estimated_error = summary.estimated_relmse;
-    history_.push_back({progress_.passes, progress_.wall_s, summary.estimated_relmse});
+    if (history_.empty() || history_.back().passes < progress_.passes)
+        history_.push_back({progress_.passes, progress_.wall_s, summary.estimated_relmse});
     progress_.forecast = forecast_halving(history_, error_rate);
     progress_.unstable = why_unstable(summary.health, history_, error_rate);
     if (!unseen_error.empty()) progress_.unstable = unseen_error;
@@ -73,6 +139,7 @@ void RenderSession::passes_finished(uint32_t count) {
     progress_.samples = summary.samples;
     progress_.target = compare_with_target(summary);
     if (progress_.target == TargetState::kReached) progress_.finished = true;
+    if (keeps_looks) last_look_ = state();
     if (on_progress) on_progress(progress_, film);
 }
 

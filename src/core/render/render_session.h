@@ -8,11 +8,13 @@
 #include "core/scene/scene.h"
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -60,6 +62,20 @@ struct ImageLayer {
     std::vector<float> rgb;
 };
 
+// The state of a rendering after some passes, without its film: what a checkpoint keeps.
+struct SessionState {
+    uint64_t passes = 0;
+    double wall_s = 0.0;
+    std::vector<ErrorPoint> history;
+    std::map<std::string, double> phases, counts;
+    PhotonStatistics photons;  // its counts
+    struct Part {
+        std::string name;
+        std::vector<std::byte> bytes;
+    };
+    std::vector<Part> parts;  // RenderSession::keep
+};
+
 class RenderSession {
  public:
     RenderSession(Device& device, const Scene& scene, DeviceSceneHandle device_scene, Film& film, BudgetLimits limits);
@@ -87,6 +103,7 @@ class RenderSession {
     // The number of the next pass. It counts from 0, or from `first` (for replaying one pass alone).
     uint64_t next_pass() const { return first_pass_ + progress_.passes; }
     void start_at(uint64_t first) { first_pass_ = first; }
+    uint64_t first_pass() const { return first_pass_; }
     // The film's part of the image, and `samples` samples starting at `first`, for kernels.
     kernel::FilmWindow window(uint32_t first, uint32_t samples) const;
     const RenderProgress& progress() const { return progress_; }
@@ -105,6 +122,21 @@ class RenderSession {
     const std::vector<std::pair<std::string, std::string>>& choices() const { return choices_; }
     std::function<void(const std::string&)> on_note;
 
+    // What passes leave to later ones, apart from the film, is named here before the first pass, when it has its initial content:
+    // checkpoints have it. In a rendering that goes on from a checkpoint, it then has the checkpoint's content. Neither may move or
+    // change its size. Throws InputError if the checkpoint has something else.
+    void keep(const std::string& name, const BufferHandle& buffer);
+    template <typename T>
+    void keep_value(const std::string& name, T& value) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        keep_part({name, nullptr, &value, sizeof value});
+    }
+    // For the caller of an integrator: whether each look at the film is to be kept as a state; the last one; and a state to go on from,
+    // whose film has been restored.
+    bool keeps_looks = false;
+    const std::optional<SessionState>& last_look() const { return last_look_; }
+    void go_on_from(SessionState state);
+
     // Work before the first pass that counts as rendering.
     void add_preparation(double seconds) { progress_.wall_s += seconds; }
 
@@ -118,6 +150,17 @@ class RenderSession {
 
  private:
     using Clock = std::chrono::steady_clock;
+    struct KeptPart {
+        std::string name;
+        BufferHandle buffer;  // or else
+        void* value;
+        size_t bytes;
+    };
+    void keep_part(KeptPart part);
+    SessionState state() const;
+    void begin_to_go_on();
+    void look();
+    void apply_limits();
     TargetState compare_with_target(const FilmSummary& summary) const;
     BudgetLimits limits_;
     RenderProgress progress_;
@@ -129,6 +172,9 @@ class RenderSession {
     double seconds_per_pass_ = 0.0;
     double last_look_s_ = 0.0;
     bool interrupted_ = false;
+    std::vector<KeptPart> kept_;
+    std::optional<SessionState> last_look_;
+    std::optional<SessionState> went_on_from_;  // until the first pass
 };
 
 }  // namespace lampyris

@@ -66,6 +66,7 @@ class BidirectionalRender {
     }
 
     void render() {
+        session_.keep_value("paths of a part", part_);
         while (const uint32_t count = session_.next_passes()) {
             for (uint32_t i = 0; i < count; ++i) render_pass(session_.next_pass() + i);
             session_.passes_finished(count);

@@ -113,6 +113,7 @@ class MltRender {
     }
 
     void render() {
+        session_.keep_value("brightness", brightness_);
         while (const uint32_t count = session_.next_passes()) {
             for (uint32_t i = 0; i < count; ++i) render_pass(uint32_t(session_.next_pass() + i));
             session_.passes_finished(count);

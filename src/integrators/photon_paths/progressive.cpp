@@ -65,7 +65,7 @@ class ProgressivePhotonMapping {
         queries_ = device_.create_buffer(points * sizeof(glm::vec4), "places of hit points");
         gathered_ = device_.create_buffer(points * sizeof(glm::vec4), "gathered flux");
         statistics_ = device_.create_buffer(points * sizeof(glm::vec2), "photon statistics");
-        store_ = device_.create_buffer(size_t(capacity_) * sizeof(kernel::PhotonRecord), "photons");
+        make_store();
         // After the buffers: if some are too large to bind, the device compiles kernels only at their first run, when
         // it knows which.
         eye_ = device_.compile(photon_files::kEye, effects);
@@ -90,10 +90,11 @@ class ProgressivePhotonMapping {
     }
 
     void render() {
-        if (session_.next_pass() > 0 && (fixed_ || params_.schedule == kernel::SCHEDULE_SHARED))
+        if (session_.first_pass() > 0 && (fixed_ || params_.schedule == kernel::SCHEDULE_SHARED))
             throw InputError(
                 "error: with fixed hit points or schedule=shared, a pass depends on the passes before it and cannot be "
                 "rendered alone; use sppm with schedule=memoryless");
+        keep_state();
         get_ready();
         while (const uint32_t count = session_.next_passes()) {
             for (uint32_t i = 0; i < count; ++i) one_pass(session_.next_pass() + i);
@@ -103,6 +104,25 @@ class ProgressivePhotonMapping {
     }
 
  private:
+    void keep_state() {
+        const uint32_t capacity = capacity_;
+        session_.keep_value("paths of a part", part_);
+        session_.keep_value("photons of a part", capacity_);
+        if (capacity_ != capacity) make_store();
+        session_.keep("photon statistics", statistics_);
+        session_.keep("bias of the film", film_bias_);
+        if (!fixed_) return;
+        session_.keep("hit points", hits_);
+        session_.keep("places of hit points", queries_);
+        if (ways_) session_.keep("radiance on the way to hit points", ways_);
+        session_.keep_value("eye paths were followed", followed_);
+    }
+
+    void make_store() {
+        store_.reset();
+        store_ = device_.create_buffer(size_t(capacity_) * sizeof(kernel::PhotonRecord), "photons");
+    }
+
     // Prepares the kernels, so that the session does not time the compiler.
     void get_ready() {
         run_eye(0);
@@ -113,6 +133,7 @@ class ProgressivePhotonMapping {
     }
 
     void one_pass(uint64_t pass) {
+        ran_ = true;
         pass_.first_path = 0;
         pass_.capacity = capacity_;
         pass_.number = uint32_t(pass);
@@ -218,8 +239,7 @@ class ProgressivePhotonMapping {
             return;
         }
         capacity_ = stored;
-        store_.reset();
-        store_ = device_.create_buffer(size_t(capacity_) * sizeof(kernel::PhotonRecord), "photons");
+        make_store();
     }
 
     void gather(uint32_t stored) {
@@ -299,6 +319,7 @@ class ProgressivePhotonMapping {
     PhotonCounters download_counters() const { return download_photon_counters(*counters_); }
 
     void finish() {
+        if (!ran_) return;  // all passes came from a checkpoint
         add_map_statistics(session_, *map_);
         PhotonStatistics& photons = session_.photons;
         photons.map_parameters = show_photon_map(parse_plugin_choice(session_.photon_map).name, *map_);
@@ -316,7 +337,7 @@ class ProgressivePhotonMapping {
     const uint32_t pixels_;
     uint32_t paths_ = 0, part_ = 0, capacity_ = 0;
     SampleSlices eye_slices_;
-    bool followed_ = false;
+    bool followed_ = false, ran_ = false;
     float largest_radius_ = 0;
     kernel::PhotonPass pass_{};
     KernelHandle eye_, direct_, radius_, photons_, resolve_;
