@@ -6,6 +6,7 @@
 #include "commands/progress.h"
 #include "commands/render_options.h"
 #include "commands/replay.h"
+#include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/text.h"
 #include "core/image/image_io.h"
@@ -15,8 +16,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
+#include <system_error>
+#include <utility>
 
 namespace lampyris {
 namespace {
@@ -29,6 +34,24 @@ std::vector<std::string> choose_outputs(const RenderOptions& options, const Scen
         outputs.push_back(settings.output);
     }
     return outputs;
+}
+
+// Throws InputError if two of the files that are written are the same: one would replace the other.
+void check_distinct(const RenderOptions& options, const std::vector<std::string>& outputs) {
+    std::vector<std::pair<std::string, std::string>> files;
+    for (const std::string& output : outputs) files.emplace_back("-o", output);
+    files.emplace_back("--stats", options.statistics_file);
+    files.emplace_back("--checkpoint", options.request.checkpoint);
+    std::map<std::string, std::pair<std::string, std::string>> seen;
+    for (const auto& [option, file] : files) {
+        std::error_code error;
+        if (file.empty() || std::filesystem::is_character_file(file, error)) continue;
+        const std::filesystem::path place = std::filesystem::weakly_canonical(std::filesystem::absolute(file), error);
+        const auto [found, is_new] = seen.try_emplace(error ? file : place.string(), option, file);
+        if (!is_new)
+            throw InputError(fmt::format("error: {} '{}' and {} '{}' are the same file: one would replace the other",
+                                         found->second.first, shown(found->second.second), option, shown(file)));
+    }
 }
 
 void print_summary(const RunRecord& run, const std::vector<std::string>& outputs) {
@@ -70,6 +93,7 @@ class ConsoleObserver final : public RenderObserver {
     }
     void ready(const RenderPlan& plan) override {
         outputs_ = choose_outputs(options_, plan.settings);
+        check_distinct(options_, outputs_);
         interrupts_.set_outputs(outputs_);
         for (const std::string& output : outputs_) check_image_output(output, options_.write);
         if (!options_.statistics_file.empty()) check_writable(options_.statistics_file);

@@ -123,3 +123,13 @@ def test_more_passes_can_be_asked_for_later(program, scene, tmp_path):
     assert told["passes"] == 9
     passes = [point["passes"] for point in told["convergence"]]
     assert passes == sorted(set(passes)) and passes[0] == 1 and passes[-1] == 9
+
+
+@pytest.mark.parametrize(
+    "options",
+    [["--checkpoint", "a.pfm"], ["--stats", "a.pfm"], ["-o", "./a.pfm"], ["--stats", "b", "--checkpoint", "b"]],
+)
+def test_files_that_would_replace_each_other_are_refused(program, scene, tmp_path, options):
+    done = run(program, scene, *PATH, "-o", "a.pfm", *options, "--passes", "1", cwd=tmp_path)
+    assert done.returncode == 1 and "are the same file" in done.stderr
+    assert [one.name for one in tmp_path.iterdir()] == ["scene.pbrt"]

@@ -216,9 +216,7 @@ Rendering::State::State(RenderRequest wanted, RenderObserver* watching)
     if (!request.checkpoint.empty()) {
         check_checkpoint_file(request.checkpoint, request.resume);
         if (request.resume) resumed = read_checkpoint(request.checkpoint);
-        if (resumed)
-            check_same_rendering(request.checkpoint, resumed->identity, identity(loaded.settings.seed));
-        else if (request.resume)
+        if (request.resume && !resumed)
             observer.note(
                 fmt::format("there is no checkpoint '{}' yet: the rendering begins anew", request.checkpoint));
     }
@@ -263,6 +261,7 @@ RenderOutcome Rendering::State::run(uint32_t seed) {
     std::vector<ConvergencePoint> convergence;
     double earlier_s = setup_s;  // before this run
     if (resumed) {
+        check_same_rendering(request.checkpoint, resumed->identity, identity(seed));
         film.restore(resumed->film);
         convergence = std::move(resumed->convergence);
         earlier_s += resumed->total_s;
