@@ -1,6 +1,7 @@
 #include "core/base/plugin.h"
 
 #include "core/base/error.h"
+#include "core/base/file.h"
 #include "core/base/registry.h"
 #include "core/plugin_abi.h"
 
@@ -45,8 +46,8 @@ std::string_view plugin_abi() { return LAMPYRIS_PLUGIN_ABI; }
 void load_plugin(const std::string& file) {
     std::error_code failed;
     if (!fs::exists(file, failed)) throw InputError(fmt::format("{}: error: there is no such plugin file", file));
-    if (fs::is_directory(file, failed))
-        throw InputError(fmt::format("{}: error: this is a folder; a plugin is a shared object (.so)", file));
+    if (const std::string why = why_not_readable(file); !why.empty())
+        throw InputError(fmt::format("{}: error: {}; a plugin is a shared object (.so)", file, why));
     // dlopen searches the system's folders for a name without a slash; hence the full path.
     const std::string path = fs::canonical(file).string();
     static std::set<std::string> loaded;

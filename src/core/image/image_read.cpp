@@ -1,5 +1,6 @@
 // Reads images: OpenImageIO for everything but PFM.
 #include "core/base/error.h"
+#include "core/base/file.h"
 #include "core/base/memory.h"
 #include "core/image/image_io.h"
 #include "core/image/pfm.h"
@@ -155,7 +156,7 @@ Image read_image(const std::string& path, const ReadOptions& options) {
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
     if (!fs::exists(status)) fail(path, error ? error.message() : std::strerror(ENOENT));
-    if (fs::is_directory(status)) fail(path, "it is a folder");
+    if (const std::string why = why_not_readable(path); !why.empty()) fail(path, why);
     if (std::FILE* file = std::fopen(path.c_str(), "rb")) {
         std::fclose(file);
     } else {
