@@ -102,6 +102,41 @@ TEST_P(Metropolis, StepsChangeNoMean) {
     }
 }
 
+// A point light in a glass ball, seen through another: neither next-event estimation nor splats nor chance find its light.
+TEST_P(Metropolis, FindsWhatOnlyConnectionsDo) {
+    const std::string text = R"(
+LookAt 0 0 4  0 0 0  0 1 0
+Camera "perspective" "float fov" 40
+Sampler "independent"
+PixelFilter "box"
+Film "rgb" "integer xresolution" 16 "integer yresolution" 16
+WorldBegin
+LightSource "point" "point3 from" [ 0 0 -3 ] "rgb I" [ 10 10 10 ]
+Material "dielectric"
+AttributeBegin
+Translate 0 0 -3
+Shape "sphere" "float radius" 0.5
+AttributeEnd
+AttributeBegin
+Translate 0 0 4
+Shape "sphere" "float radius" 0.5
+AttributeEnd
+Material "diffuse" "rgb reflectance" [ 0.8 0.8 0.8 ]
+Shape "sphere" "float radius" 20
+)";
+    constexpr uint32_t kRuns = 16;
+    RenderSettings settings = settings_of("cpu", "bdpt:maxdepth=6", 64, 0);
+    const Mean right = mean_of_text_runs(text, settings, kRuns);
+    settings.backend = GetParam();
+    settings.integrator = "mlt:maxdepth=6,mutationsperpixel=32,bootstrapsamples=8000,chains=256";
+    settings.samples = 2;
+    const Mean found = mean_of_text_runs(text, settings, kRuns);
+    const double error = std::hypot(right.error(), found.error());
+    EXPECT_LT(std::abs(found.value() - right.value()), student_threshold(kAlpha, kRuns - 1) * error)
+        << found.value() << " +- " << found.error() << ", " << right.value() << " +- " << right.error();
+    EXPECT_LT(error, 0.1 * right.value()) << "the test has no power";
+}
+
 // A pass is one sample of each pixel, and passes are independent: their spread is that of renderings with other seeds.
 TEST(Metropolis, PassesTellTheirError) {
     RenderSettings settings = settings_of("cpu", "mlt:maxdepth=6,mutationsperpixel=16,bootstrapsamples=2000", 16, 8);

@@ -95,6 +95,7 @@ class MltRender {
         pass_.maxdepth = params.maxdepth;
         pass_.weights = params.weights;
         pass_.connections = -1;
+        pass_.samples = 1.0f;
         pass_.only_light = pass_.only_camera = -1;
         passes_->upload(&pass_, sizeof pass_);
         const PathParams direct{std::min(params.maxdepth, kernel::MLT_LEAST_DEPTH - 1), 1};
@@ -114,6 +115,7 @@ class MltRender {
 
     void render() {
         session_.keep_value("brightness", brightness_);
+        if (brightness_.count > 0.0) tell_brightness();
         while (const uint32_t count = session_.next_passes()) {
             for (uint32_t i = 0; i < count; ++i) render_pass(uint32_t(session_.next_pass() + i));
             session_.passes_finished(count);
@@ -167,6 +169,10 @@ class MltRender {
         session_.add_count("small_steps", sum > 0.0 ? mutations - large : 0.0);
         session_.add_count("small_steps_accepted", counters[kernel::MLT_SMALL_ACCEPTED]);
         brightness_.add(sum / (double(session_.scene.width()) * double(session_.scene.height())));
+        tell_brightness();
+    }
+
+    void tell_brightness() {
         session_.set_count("brightness", brightness_.mean);
         session_.set_count("brightness_error", brightness_.error());
         const double uncertain = brightness_.mean > 0.0 ? brightness_.error() / brightness_.mean : 0.0;
