@@ -91,6 +91,7 @@ class ConsoleObserver final : public RenderObserver {
     void note(const std::string& text) override {
         if (!options_.quiet) tell("note: {}\n", text);
     }
+    void failure(const std::string& text) override { tell("{}\n", text); }
     void ready(const RenderPlan& plan) override {
         outputs_ = choose_outputs(options_, plan.settings);
         check_distinct(options_, outputs_);

@@ -129,6 +129,44 @@ TEST(Checkpoint, DamageIsFound) {
     EXPECT_TRUE(read_checkpoint(file.name()));
 }
 
+// The hash is right, but what it covers is not.
+TEST(Checkpoint, NonsenseIsRefused) {
+    const Temporary file;
+    RenderRequest request = checkpoint_request("path:maxdepth=6", 2);
+    request.checkpoint = file.name();
+    render(request);
+    const Checkpoint right = *read_checkpoint(file.name());
+    const auto is_refused = [&](auto change) {
+        Checkpoint wrong = right;
+        change(wrong);
+        write_checkpoint(file.name(), wrong);
+        try {
+            read_checkpoint(file.name());
+        } catch (const InputError&) {
+            return true;
+        }
+        return false;
+    };
+    EXPECT_FALSE(is_refused([](Checkpoint&) {}));
+    EXPECT_TRUE(is_refused([](Checkpoint& c) { c.session.passes = uint64_t(1) << 62; }));
+    EXPECT_TRUE(is_refused([](Checkpoint& c) { c.session.passes = 0; }));
+    EXPECT_TRUE(is_refused([](Checkpoint& c) { c.session.wall_s = -1.0; }));
+    EXPECT_TRUE(is_refused([](Checkpoint& c) { c.total_s = 1e300; }));
+    EXPECT_TRUE(is_refused([](Checkpoint& c) { c.session.history.clear(); }));
+    EXPECT_TRUE(is_refused([](Checkpoint& c) { c.session.history.push_back(c.session.history.front()); }));
+}
+
+// What the variance between passes cannot show is known again.
+TEST(Checkpoint, AnUnstableEstimateStaysSo) {
+    const Temporary file;
+    RenderRequest request = checkpoint_request("mlt:maxdepth=6,chains=8,bootstrapsamples=1,mutationsperpixel=1", 20);
+    request.checkpoint = file.name();
+    const std::string unstable = render(request).record.progress.unstable;
+    ASSERT_NE(unstable.find("brightness"), std::string::npos) << unstable;
+    request.resume = true;
+    EXPECT_EQ(render(request).record.progress.unstable, unstable);
+}
+
 // Interrupts the rendering at its first look, and counts the images that it is handed.
 class Listener final : public RenderObserver {
  public:

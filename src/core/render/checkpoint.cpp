@@ -24,7 +24,10 @@ using Json = nlohmann::ordered_json;
 
 // The file: this line; the length of the JSON text, 8 bytes; the text; the film; the parts; and a hash of all that, 8 bytes.
 constexpr std::string_view kMagic = "lampyris checkpoint 1\n";
-constexpr uint64_t kMostText = 1u << 28;
+constexpr const char* kSchema = "lampyris.checkpoint/1";
+constexpr uint64_t kMostText = 1u << 24;
+constexpr uint64_t kMostCount = uint64_t(1) << 60;
+constexpr double kMostSeconds = 1e10;
 
 // FNV-1a over words of eight bytes, the last of which is filled up with zeros. It finds damage, not forgery.
 uint64_t hash_of(std::span<const std::byte> bytes) {
@@ -92,7 +95,7 @@ ConvergencePoint point_of(const Json& json) {
 }
 
 Json text_of(const Checkpoint& c) {
-    Json json{{"schema", "lampyris.checkpoint/1"}};
+    Json json{{"schema", kSchema}};
     for (const auto& [name, value] : c.identity) json["rendering"].push_back({name, value});
     const SessionState& s = c.session;
     json["passes"] = s.passes;
@@ -111,21 +114,39 @@ Json text_of(const Checkpoint& c) {
     return json;
 }
 
+uint64_t count_of(const Json& json) {
+    if (!json.is_number_unsigned() || json.get<uint64_t>() > kMostCount)
+        throw std::out_of_range("a number is out of range");
+    return json;
+}
+
+double seconds_of(const Json& json) {
+    const double seconds = json;
+    if (!(seconds >= 0.0 && seconds < kMostSeconds)) throw std::out_of_range("a time is out of range");
+    return seconds;
+}
+
 Checkpoint checkpoint_of(const Json& json, std::span<const std::byte> binary) {
     Checkpoint c;
+    if (json.at("schema") != kSchema) throw std::out_of_range("it is of another version");
     for (const Json& pair : json.at("rendering")) c.identity.emplace_back(pair.at(0), pair.at(1));
     SessionState& s = c.session;
-    s.passes = json.at("passes");
-    s.wall_s = json.at("wall_s");
-    c.total_s = json.at("total_s");
-    for (const Json& p : json.at("history")) s.history.push_back({p.at(0), p.at(1), number(p.at(2))});
+    s.passes = count_of(json.at("passes"));
+    s.wall_s = seconds_of(json.at("wall_s"));
+    c.total_s = seconds_of(json.at("total_s"));
+    for (const Json& p : json.at("history")) {
+        s.history.push_back({count_of(p.at(0)), seconds_of(p.at(1)), number(p.at(2))});
+        if (s.history.size() > 1 && s.history.back().passes <= s.history[s.history.size() - 2].passes)
+            throw std::out_of_range("its history is not in order");
+    }
+    if (s.history.empty() || s.history.back().passes > s.passes) throw std::out_of_range("its history is not its own");
     s.phases = json.at("phases").get<std::map<std::string, double>>();
     s.counts = json.at("counts").get<std::map<std::string, double>>();
     const Json& photons = json.at("photons");
-    s.photons.emitted = photons.at(0);
-    s.photons.stored = photons.at(1);
-    s.photons.lost = photons.at(2);
-    s.photons.rays = photons.at(3);
+    s.photons.emitted = count_of(photons.at(0));
+    s.photons.stored = count_of(photons.at(1));
+    s.photons.lost = count_of(photons.at(2));
+    s.photons.rays = count_of(photons.at(3));
     for (const Json& p : json.at("convergence")) c.convergence.push_back(point_of(p));
     const auto take = [&](size_t bytes) {
         if (bytes > binary.size()) throw std::out_of_range("its parts are longer than the file");
@@ -133,21 +154,27 @@ Checkpoint checkpoint_of(const Json& json, std::span<const std::byte> binary) {
         binary = binary.subspan(bytes);
         return taken;
     };
-    const size_t pixels = json.at("pixels");
+    const size_t pixels = count_of(json.at("pixels"));
     if (pixels > binary.size() / sizeof(kernel::FilmPixel)) throw std::out_of_range("its film is longer than the file");
     c.film.resize(pixels);
     std::memcpy(c.film.data(), take(pixels * sizeof(kernel::FilmPixel)).data(), pixels * sizeof(kernel::FilmPixel));
     for (const Json& part : json.at("parts")) {
-        const std::span<const std::byte> bytes = take(part.at(1));
+        const std::span<const std::byte> bytes = take(count_of(part.at(1)));
         s.parts.push_back({part.at(0), {bytes.begin(), bytes.end()}});
     }
+    if (!binary.empty()) throw std::out_of_range("it is longer than its parts");
     return c;
 }
 
+// Nothing if it does not begin as a checkpoint.
 std::vector<std::byte> read_all(const std::string& file) {
     std::ifstream stream(file, std::ios::binary);
     std::error_code error;
     const uintmax_t size = std::filesystem::file_size(file, error);
+    std::string begin(kMagic.size(), ' ');
+    stream.read(begin.data(), std::streamsize(begin.size()));
+    if (stream.gcount() == 0 || begin != kMagic) return {};  // before memory is asked for
+    stream.seekg(0);
     if (!stream || error) throw MachineError(fmt::format("error: cannot read the checkpoint '{}'", shown(file)));
     std::vector<std::byte> bytes(size);
     stream.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size));

@@ -1,6 +1,6 @@
 #include "core/render/render.h"
 
-#include "core/base/version.h"
+#include "core/base/plugin.h"
 #include "core/image/image_io.h"
 #include "core/render/checkpoint.h"
 #include "core/render/integrator_choice.h"
@@ -136,7 +136,7 @@ class CheckpointKeeper {
             write_checkpoint(request_.checkpoint, {identity_, state, convergence, total_s, film.pixels()});
             written_passes_ = state.passes;
         } catch (const MachineError& error) {
-            observer_.warning(fmt::format("warning: the checkpoint is not up to date: {}", error.what()));
+            observer_.failure(fmt::format("warning: the checkpoint is not up to date: {}", error.what()));
         }
     }
 
@@ -320,7 +320,7 @@ RenderOutcome Rendering::State::outcome_of(const RenderSession& session, const F
 RenderIdentity Rendering::State::identity(uint32_t seed) const {
     const auto& crop = loaded.settings.crop;
     RenderIdentity identity{
-        {"version", version()},
+        {"version", std::string(plugin_abi())},
         {"scene", fmt::format("{:016x}", loaded.scene.hash)},
         {"resolution", fmt::format("{}x{}", loaded.scene.width(), loaded.scene.height())},
         {"crop", fmt::format("{}", fmt::join(crop, ","))},

@@ -83,6 +83,8 @@ class RenderObserver : public Watch {
     virtual void warning([[maybe_unused]] const std::string& text) {}
     // Something in the scene was mapped or ignored, and the user should know.
     virtual void note([[maybe_unused]] const std::string& text) {}
+    // Something that was asked for could not be done, and the rendering goes on.
+    virtual void failure([[maybe_unused]] const std::string& text) {}
     // The scene has been read and is correct; no device is working yet.
     virtual void ready([[maybe_unused]] const RenderPlan& plan) {}
     // After each slice of passes that ends at a power of two, after the last one, and at least every two seconds.

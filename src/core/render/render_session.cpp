@@ -72,6 +72,7 @@ SessionState RenderSession::state() const {
 
 // The integrator is ready. What it did for that, it had done before: those counts are the checkpoint's.
 void RenderSession::begin_to_go_on() {
+    progress_.wall_s = went_on_from_->wall_s;
     phases_ = went_on_from_->phases;
     counts_ = went_on_from_->counts;
     const PhotonStatistics& before = went_on_from_->photons;

@@ -66,7 +66,7 @@ class BidirectionalRender {
     }
 
     void render() {
-        session_.keep_value("paths of a part", part_);
+        keep_state();
         while (const uint32_t count = session_.next_passes()) {
             for (uint32_t i = 0; i < count; ++i) render_pass(session_.next_pass() + i);
             session_.passes_finished(count);
@@ -78,6 +78,18 @@ class BidirectionalRender {
     }
 
  private:
+    // How a pass is divided: with a cache, or a map that chooses by chance, the image depends on it.
+    void keep_state() {
+        const uint32_t most = part_, capacity = pass_.sums_capacity;
+        session_.keep_value("paths of a part", part_);
+        session_.keep_value("photons of a path", numbers_);
+        session_.keep_value("weights of photons", pass_.sums_capacity);
+        if (part_ < 1 || part_ > most || numbers_ < 1 || pass_.sums_capacity < 1 ||
+            pass_.sums_capacity > kMostVertices * 2)
+            throw InputError("error: the checkpoint cannot be resumed: its parts of a pass are none");
+        if (pass_.sums_capacity != capacity) make_sums(pass_.sums_capacity);
+    }
+
     void describe_pass() {
         const Scene& scene = session_.scene;
         const uint32_t full = scene.width() * scene.height();
@@ -254,11 +266,16 @@ class BidirectionalRender {
         kept_ = counters();
         pass_.deepest = int(kept_[kernel::DEEPEST_VERTEX]);
         session_.photons.rays += kept_[kernel::LIGHT_RAYS];
+        const uint32_t vertices = kept_[kernel::LIGHT_VERTICES], photons = kept_[kernel::PHOTONS_KEPT];
         bool fits = true;
-        if (kept_[kernel::LIGHT_VERTICES] > pass_.capacity)
-            fits = make_room(kept_[kernel::LIGHT_VERTICES], count, [&](uint32_t n) { make_vertices(n); });
-        if (kept_[kernel::PHOTONS_KEPT] > pass_.photon_capacity)
-            fits = make_room(kept_[kernel::PHOTONS_KEPT], count, [&](uint32_t n) { make_photons(n); }) && fits;
+        // Whatever room there is from earlier passes, so that they do not decide.
+        if (std::max(vertices, photons) > kMostVertices && count > 1) {
+            part_ = std::max(1u, std::min(part_, count / 2));
+            fits = false;
+        } else {
+            if (vertices > pass_.capacity) make_vertices(vertices + vertices / 8), fits = false;
+            if (photons > pass_.photon_capacity) make_photons(photons + photons / 8), fits = false;
+        }
         // A photon's place among the sums is its number times the paths, plus the path's.
         if (merges_ && kept_[kernel::MOST_PHOTONS] > pass_.sums_capacity / count) {
             numbers_ = kept_[kernel::MOST_PHOTONS] + 1;
@@ -268,16 +285,6 @@ class BidirectionalRender {
         }
         if (pass_.splats != 0) session_.add_count("splats", kept_[kernel::LIGHT_SPLATS]);
         return fits;
-    }
-
-    // Always false: the paths have to be traced again.
-    template <typename Make>
-    bool make_room(uint32_t needed, uint32_t count, Make make) {
-        if (needed <= kMostVertices || count == 1)
-            make(needed + needed / 8);
-        else
-            part_ = std::max(1u, std::min(part_, count / 2));
-        return false;
     }
 
     void trace_camera_paths() {

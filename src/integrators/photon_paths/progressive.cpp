@@ -105,9 +105,12 @@ class ProgressivePhotonMapping {
 
  private:
     void keep_state() {
-        const uint32_t capacity = capacity_;
+        constexpr uint32_t kMostPhotons = 1u << 30;
+        const uint32_t capacity = capacity_, most = part_;
         session_.keep_value("paths of a part", part_);
         session_.keep_value("photons of a part", capacity_);
+        if (part_ < 1 || part_ > most || capacity_ < capacity || (capacity_ > capacity && capacity_ > kMostPhotons))
+            throw InputError("error: the checkpoint cannot be resumed: its parts of a pass are none");
         if (capacity_ != capacity) make_store();
         session_.keep("photon statistics", statistics_);
         session_.keep("bias of the film", film_bias_);
