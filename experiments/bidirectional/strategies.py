@@ -14,7 +14,7 @@ from lab.store import Store
 from lab.target import Plan
 
 WEIGHTED, ALONE = "strategy", "alone"  # layers of the program's EXR
-TOLERANCE = 1e-3  # of the sum of the weighted pictures, in the picture's mean: the layers' precision
+TOLERANCE = 1e-3  # of the sum of the weighted pictures, in the picture's mean
 
 
 @dataclass
@@ -71,7 +71,9 @@ def draw_pyramid(folder: Path, name: str, strategies: list[Strategy], exposure: 
         for one in axes.flat:
             one.set_axis_off()
         for (row, column), one in by_place.items():
-            show_picture(axes[row, column], one.weighted if weighted else one.alone, one.name, exposure)
+            # Longer paths are darker: a stop for each vertex.
+            stops = exposure + max(0, one.scattering - 1)
+            show_picture(axes[row, column], one.weighted if weighted else one.alone, one.name, stops)
 
 
 def viewer_of(gallery: Gallery, scene: Scene, run: Run, strategies: list[Strategy], weighted: bool) -> Viewer:
@@ -112,7 +114,7 @@ def sum_verdict(differences: dict[str, tuple[float, str]]) -> Verdict:
         "With their weights, the strategies add up to the picture",
         f"Mean difference of a pixel, over the picture's mean: {told}" if told else "not measured",
         judge(difference <= TOLERANCE for difference, _ in differences.values()),
-        f"a difference up to {TOLERANCE:g} counts: pictures are kept as halfs",
+        f"a difference up to {TOLERANCE:g} counts as none",
         "Veach, Robust Monte Carlo Methods for Light Transport Simulation (1997), section 10.2",
         [key for _, key in differences.values()],
     )
@@ -157,8 +159,9 @@ def report(plan: Plan, store: Store, folder: Path) -> Section:
             "A path with k scattering vertices can be found with s vertices from the light and t = k + 2 - s from the "
             "camera. Rows: k from 0; columns: s from 0. Alone, each strategy shows all light that it can find, with "
             "its own noise; its weight keeps what it is good at (Veach 1997, figure 10.2).",
-            f"{plan['passes']} passes, `maxdepth` {plan['maxdepth']}; all pictures of a scene at one exposure. "
-            "`--set integrator.strategies=on` writes these pictures of any scene as layers of its EXR.",
+            f"{plan['passes']} passes, `maxdepth` {plan['maxdepth']}; all pictures of a scene at one exposure, in the "
+            "figures a stop more for each vertex beyond the first. `--set integrator.strategies=on` writes these "
+            "pictures of any scene as layers of its EXR.",
             *failed,
         ],
         [sum_verdict(differences)],
