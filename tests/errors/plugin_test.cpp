@@ -39,7 +39,7 @@ TEST_F(PluginErrors, AMissingFileIsNamed) {
 
 TEST_F(PluginErrors, AFolderIsNoPlugin) {
     EXPECT_EQ(message(folder_.string()),
-              folder_.string() + ": error: this is a folder; a plugin is a shared object (.so)");
+              folder_.string() + ": error: it is a folder; a plugin is a shared object (.so)");
 }
 
 TEST_F(PluginErrors, ATextIsNoSharedObject) {
