@@ -19,32 +19,42 @@ FAMILIES = {
 }
 
 
-def killed_until_done(program, scene, folder, more, random_numbers, kills):
-    """Renders with a checkpoint, is killed so many times at random moments, and then goes on to the end."""
+def killed_until_done(program, scene, folder, more, random_numbers, most):
+    """Renders with a checkpoint, is killed at random moments, `most` times at most, and goes on to the end."""
+    folder.mkdir()
     image = folder / "killed.pfm"
     arguments = [*more, "-o", image, "--checkpoint", folder / "state", "--every", "0.05s", "--resume", "--quiet"]
-    survived = 0
-    for _ in range(kills):
+    killed = 0
+    while killed < most:
         with subprocess.Popen(command(program, scene, *arguments), stderr=subprocess.PIPE, text=True) as process:
             try:
                 _, errors = process.communicate(timeout=random_numbers.uniform(0.2, 1.2))
             except subprocess.TimeoutExpired:
                 process.send_signal(signal.SIGKILL)
-                survived += 1
+                killed += 1
             else:
                 assert process.returncode == 0, errors
+                break
     done = run(program, scene, *arguments)
     assert done.returncode == 0, done.stderr
-    return image.read_bytes(), survived
+    return image.read_bytes(), killed
 
 
 def check_family(program, scene, folder, family, kills):
+    """As many renderings as it takes to kill one so often."""
     whole = folder / "whole.pfm"
     done = run(program, scene, *FAMILIES[family], "-o", whole)
     assert done.returncode == 0, done.stderr
-    content, killed = killed_until_done(program, scene, folder, FAMILIES[family], random.Random(7), kills)
-    assert content == whole.read_bytes()
-    assert killed > 0, "every rendering was done before it was killed"
+    random_numbers = random.Random(7)
+    killed = turn = 0
+    while killed < kills:
+        turn += 1
+        content, more = killed_until_done(
+            program, scene, folder / str(turn), FAMILIES[family], random_numbers, kills - killed
+        )
+        assert content == whole.read_bytes()
+        killed += more
+        assert turn <= kills, "renderings are done before they are killed"
 
 
 @pytest.mark.parametrize("family", ["path", "sppm"])
