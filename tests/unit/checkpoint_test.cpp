@@ -2,6 +2,7 @@
 #include "core/render/checkpoint.h"
 
 #include "support/checkpoint.h"
+#include "support/render_error.h"
 
 #include <gtest/gtest.h>
 
@@ -14,6 +15,7 @@ namespace lampyris {
 namespace {
 
 using test::checkpoint_request;
+using test::error_of;
 using test::expect_same_outcome;
 using test::kRoom;
 using test::Temporary;
@@ -40,15 +42,6 @@ INSTANTIATE_TEST_SUITE_P(Integrators, CheckpointTest, testing::ValuesIn(cases())
         if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
     return name;
 });
-
-std::string error_of(const RenderRequest& request) {
-    try {
-        render(request);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
-}
 
 TEST(Checkpoint, OfAnotherRenderingIsRefused) {
     const Temporary file;

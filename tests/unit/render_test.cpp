@@ -5,6 +5,7 @@
 #include "core/render/integrator.h"
 #include "integrators/photon_paths/progressive_params.h"
 #include "support/render.h"
+#include "support/render_error.h"
 
 #include <gtest/gtest.h>
 
@@ -52,15 +53,6 @@ class Listener final : public RenderObserver {
         };
     }
 };
-
-std::string error_of(const RenderRequest& request) {
-    try {
-        render(request);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
-}
 
 TEST(Render, ASceneFromTextIsAnImage) {
     RenderRequest request = request_of("");

@@ -46,7 +46,6 @@ class BidirectionalRender {
           finish_(device_.compile(kPixels, session.scene.effects.mask())) {
         describe_pass();
         part_ = std::min(pass_.paths, kPart);
-        numbers_ = uint32_t(std::clamp(options.maxdepth, 1, 8));
         splats_ = device_.create_buffer(splat_bytes(pixels_, options.name), "splats");
         seen_ = device_.create_buffer(size_t(pixels_) * sizeof(glm::vec4), "radiance of camera paths");
         connected_ = device_.create_buffer(options.shares ? size_t(pixels_) * 4 : 4, "radiance by connections");
@@ -57,7 +56,7 @@ class BidirectionalRender {
         make_vertices(
             options.strategies == kernel::STRATEGIES_ALL && options.connections != 0 ? part_ * kVerticesPerPath : 1);
         make_photons(merges_ ? part_ * kVerticesPerPath : 1);
-        make_sums(merges_ ? part_ * numbers_ : 1);
+        make_sums(merges_ ? part_ * uint32_t(std::clamp(options.maxdepth, 1, 8)) : 1);
         make_queries(merges_ ? pixels_ * kVerticesPerPath : 1);
         if (merges_) open_map();
         run_light_paths(0, 0);  // compiles, if need be, before the clock starts
@@ -82,11 +81,9 @@ class BidirectionalRender {
     void keep_state() {
         const uint32_t most = part_, capacity = pass_.sums_capacity;
         session_.keep_value("paths of a part", part_);
-        session_.keep_value("photons of a path", numbers_);
         session_.keep_value("weights of photons", pass_.sums_capacity);
-        if (part_ < 1 || part_ > most || numbers_ < 1 || pass_.sums_capacity < 1 ||
-            pass_.sums_capacity > kMostVertices * 2)
-            throw InputError("error: the checkpoint cannot be resumed: its parts of a pass are none");
+        if (part_ < 1 || part_ > most || pass_.sums_capacity < 1 || pass_.sums_capacity > kMostVertices * 2)
+            throw InputError("error: the checkpoint cannot be resumed: how it divides passes is out of range");
         if (pass_.sums_capacity != capacity) make_sums(pass_.sums_capacity);
     }
 
@@ -278,9 +275,9 @@ class BidirectionalRender {
         }
         // A photon's place among the sums is its number times the paths, plus the path's.
         if (merges_ && kept_[kernel::MOST_PHOTONS] > pass_.sums_capacity / count) {
-            numbers_ = kept_[kernel::MOST_PHOTONS] + 1;
-            make_sums(std::min(part_, kMostVertices / numbers_) * numbers_);
-            part_ = std::max(1u, std::min(part_, kMostVertices / numbers_));
+            const uint32_t numbers = kept_[kernel::MOST_PHOTONS] + 1;  // of photons of a path
+            make_sums(std::min(part_, kMostVertices / numbers) * numbers);
+            part_ = std::max(1u, std::min(part_, kMostVertices / numbers));
             fits = false;
         }
         if (pass_.splats != 0) session_.add_count("splats", kept_[kernel::LIGHT_SPLATS]);
@@ -376,7 +373,6 @@ class BidirectionalRender {
     const uint32_t pixels_;
     kernel::BidirectionalPass pass_{};
     uint32_t part_ = 0;
-    uint32_t numbers_ = 1;      // of photons of a path for which there is room
     uint32_t splatted_ = 0;     // light paths of this pass whose splats are complete
     uint32_t query_count_ = 0;  // camera vertices of this pass that are merged
     float share_ = 1.0f;        // of photons, in weights

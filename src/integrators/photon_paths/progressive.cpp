@@ -110,7 +110,7 @@ class ProgressivePhotonMapping {
         session_.keep_value("paths of a part", part_);
         session_.keep_value("photons of a part", capacity_);
         if (part_ < 1 || part_ > most || capacity_ < capacity || (capacity_ > capacity && capacity_ > kMostPhotons))
-            throw InputError("error: the checkpoint cannot be resumed: its parts of a pass are none");
+            throw InputError("error: the checkpoint cannot be resumed: how it divides passes is out of range");
         if (capacity_ != capacity) make_store();
         session_.keep("photon statistics", statistics_);
         session_.keep("bias of the film", film_bias_);
