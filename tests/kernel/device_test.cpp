@@ -6,6 +6,7 @@
 #include "support/temporary_folder.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -239,6 +240,30 @@ TEST_F(ShaderCacheTest, DamagedEntryIsMadeAgain) {
         EXPECT_EQ(std::filesystem::file_size(entry), size);
         std::ifstream(entry, std::ios::binary).read(again.data(), std::streamsize(size));
         EXPECT_EQ(again, good) << "damage " << damage;
+    }
+}
+
+TEST_F(ShaderCacheTest, AnotherKernelsEntryIsNotTaken) {
+    EXPECT_EQ(run(), 3.0f);
+    const auto entry = entries().at(0);
+    const size_t bytes = spirv_bytes_;
+    EXPECT_NE(run(kernel::EFFECT_LAYERED_COAT), 0.0f);
+    ASSERT_NE(spirv_bytes_, bytes);
+    for (const auto& other : entries())
+        if (other != entry) std::filesystem::copy_file(other, entry, std::filesystem::copy_options::overwrite_existing);
+    EXPECT_EQ(run(), 3.0f);
+    EXPECT_EQ(spirv_bytes_, bytes);
+}
+
+TEST_F(ShaderCacheTest, WhatIsNoFileIsLeftAlone) {
+    EXPECT_EQ(run(), 3.0f);
+    const auto entry = entries().at(0);
+    for (const bool is_pipe : {true, false}) {
+        std::filesystem::remove(entry);
+        ASSERT_TRUE(is_pipe ? mkfifo(entry.c_str(), 0600) == 0 : std::filesystem::create_directory(entry));
+        EXPECT_EQ(run(), 3.0f);
+        EXPECT_EQ(entries().size(), 1u);
+        EXPECT_EQ(std::filesystem::is_fifo(entry), is_pipe);
     }
 }
 

@@ -1,18 +1,21 @@
 #include "backends/vulkan/shader_cache.h"
 
-#include <fmt/format.h>
-#include <unistd.h>
+#include "core/base/error.h"
+#include "core/base/file.h"
 
-#include <atomic>
+#include <fmt/format.h>
+
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <span>
 #include <system_error>
+#include <vector>
 
 namespace lampyris::vulkan {
 namespace {
 
-constexpr uint64_t kMagic = 0x31565053'594d414cu;  // "LAMYSPV1", little endian
+constexpr uint64_t kMagic = 0x32565053'594d414cu;  // "LAMYSPV2", little endian
 
 struct Header {
     uint64_t magic = kMagic;
@@ -20,8 +23,10 @@ struct Header {
     std::array<uint64_t, 2> checksum{};
 };
 
-std::array<uint64_t, 2> checksum_of(const Spirv& spirv) {
+// With the key: the file of another kernel under this name is none of ours.
+std::array<uint64_t, 2> checksum_of(const ContentHash& key, const Spirv& spirv) {
     ContentHash hash;
+    for (const uint64_t part : key.value()) hash.add(part);
     hash.add(std::string_view(reinterpret_cast<const char*>(spirv.data()), spirv.size() * sizeof(uint32_t)));
     return hash.value();
 }
@@ -67,17 +72,21 @@ std::filesystem::path ShaderCache::path(const ContentHash& key) const {
 
 std::optional<Spirv> ShaderCache::find(const ContentHash& key) const {
     if (folder_.empty()) return std::nullopt;
-    std::ifstream file(path(key), std::ios::binary);
+    const std::filesystem::path name = path(key);
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(name, error)) return std::nullopt;  // a pipe could block for ever
+    std::ifstream file(name, std::ios::binary);
     Header header;
     if (!file.read(reinterpret_cast<char*>(&header), sizeof header) || header.magic != kMagic) return std::nullopt;
-    std::error_code error;
-    const auto size = std::filesystem::file_size(path(key), error);
-    if (error || size != sizeof header + header.words * sizeof(uint32_t)) return std::nullopt;
+    const uint64_t size = std::filesystem::file_size(name, error);
+    if (error || (size - sizeof header) % sizeof(uint32_t) != 0 ||
+        (size - sizeof header) / sizeof(uint32_t) != header.words)
+        return std::nullopt;
     Spirv spirv(header.words);
     if (!file.read(reinterpret_cast<char*>(spirv.data()),
                    static_cast<std::streamsize>(header.words * sizeof(uint32_t))))
         return std::nullopt;
-    if (checksum_of(spirv) != header.checksum) return std::nullopt;
+    if (checksum_of(key, spirv) != header.checksum) return std::nullopt;
     return spirv;
 }
 
@@ -85,22 +94,17 @@ void ShaderCache::store(const ContentHash& key, const Spirv& spirv) const {
     if (folder_.empty()) return;
     std::error_code error;
     std::filesystem::create_directories(folder_, error);
-    static std::atomic<unsigned> counter{0};
-    const auto temporary = folder_ / fmt::format("tmp.{}.{}", getpid(), counter++);
-    {
-        std::ofstream file(temporary, std::ios::binary);
-        const Header header{kMagic, spirv.size(), checksum_of(spirv)};
-        file.write(reinterpret_cast<const char*>(&header), sizeof header);
-        file.write(reinterpret_cast<const char*>(spirv.data()),
-                   static_cast<std::streamsize>(spirv.size() * sizeof(uint32_t)));
-        file.close();
-        if (!file) {
-            std::filesystem::remove(temporary, error);
-            return;
-        }
+    const std::filesystem::path name = path(key);
+    // Whatever else has this name (a folder, a pipe) stays.
+    if (std::filesystem::exists(name, error) && !std::filesystem::is_regular_file(name, error)) return;
+    const Header header{kMagic, spirv.size(), checksum_of(key, spirv)};
+    std::vector<std::byte> bytes(sizeof header + spirv.size() * sizeof(uint32_t));
+    std::memcpy(bytes.data(), &header, sizeof header);
+    std::memcpy(bytes.data() + sizeof header, spirv.data(), spirv.size() * sizeof(uint32_t));
+    try {
+        write_file_atomically(name.string(), std::span<const std::byte>(bytes));
+    } catch (const MachineError&) {  // the cache only saves time
     }
-    std::filesystem::rename(temporary, path(key), error);
-    if (error) std::filesystem::remove(temporary, error);
 }
 
 }  // namespace lampyris::vulkan

@@ -1,4 +1,4 @@
-// SPIR-V on disk, keyed by content. A damaged entry is found by its checksum and made again.
+// SPIR-V on disk, keyed by content. A damaged entry, or one that belongs to another key, is found by its checksum and made again.
 #pragma once
 
 #include "backends/vulkan/spirv.h"
@@ -29,8 +29,7 @@ class ShaderCache {
     static std::filesystem::path default_folder();
 
     std::optional<Spirv> find(const ContentHash& key) const;
-    // Writes to a file with a unique name and then renames it, so that readers see all of it or nothing. Failure to write is
-    // not an error: the cache only saves time.
+    // Readers see all of the file or nothing. Failure to write is not an error: the cache only saves time.
     void store(const ContentHash& key, const Spirv& spirv) const;
     std::filesystem::path path(const ContentHash& key) const;
 

@@ -3,6 +3,7 @@
 #include <glslang/SPIRV/spirv.hpp>
 
 #include <algorithm>
+#include <cstring>
 #include <map>
 #include <set>
 #include <tuple>
@@ -90,13 +91,16 @@ std::vector<ShaderBinding> used_bindings(const Spirv& spirv) {
     std::map<uint32_t, std::string> names;
     bool in_function = false;
     for_each_instruction(spirv, [&](spv::Op op, const uint32_t* words, uint32_t count) {
-        if (op == spv::OpName) names[words[1]] = reinterpret_cast<const char*>(words + 2);
+        if (op == spv::OpName && count >= 3) {
+            const auto* name = reinterpret_cast<const char*>(words + 2);
+            names[words[1]] = std::string(name, strnlen(name, (count - 2) * sizeof(uint32_t)));
+        }
         if (op == spv::OpDecorate && count == 4 && words[2] == spv::DecorationDescriptorSet) sets[words[1]] = words[3];
         if (op == spv::OpDecorate && count == 4 && words[2] == spv::DecorationBinding) bindings[words[1]] = words[3];
-        if (op == spv::OpTypePointer) pointees[words[1]] = words[3];
-        if (op == spv::OpTypeAccelerationStructureKHR) structures.insert(words[1]);
+        if (op == spv::OpTypePointer && count >= 4) pointees[words[1]] = words[3];
+        if (op == spv::OpTypeAccelerationStructureKHR && count >= 2) structures.insert(words[1]);
         if (op == spv::OpFunction) in_function = true;
-        if (op == spv::OpVariable && !in_function) variables[words[2]] = words[1];
+        if (op == spv::OpVariable && count >= 3 && !in_function) variables[words[2]] = words[1];
         // A literal that happens to equal an id only makes an unused buffer count as used, which is harmless.
         if (in_function) used.insert(words + 1, words + count);
     });

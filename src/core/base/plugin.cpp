@@ -12,7 +12,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <set>
 #include <string>
 #include <vector>
@@ -27,16 +26,31 @@ constexpr const char* kSymbol = "lampyris_plugin_abi";  // its text in the file:
 std::string read_abi(const std::string& file) {
     std::ifstream stream(file, std::ios::binary);
     if (!stream) throw InputError(fmt::format("{}: error: cannot read this plugin", file));
-    const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-    if (!bytes.starts_with("\177ELF")) throw InputError(fmt::format("{}: error: this is no shared object", file));
+    std::string bytes(4, '\0');
+    if (!stream.read(bytes.data(), 4) || bytes != "\177ELF")
+        throw InputError(fmt::format("{}: error: this is no shared object", file));
     const std::string mark = std::string(kSymbol) + "=";  // put together here: only plugins contain it whole
-    const size_t at = bytes.find(mark);
+    // Block by block, with an overlap that holds the whole text. The rest of the largest libraries is debugging information.
+    constexpr size_t kBlock = size_t(1) << 20, kMost = size_t(256) << 20, kOverlap = 1024;
+    size_t at = std::string::npos;
+    for (size_t done = 0; done < kMost && stream && at == std::string::npos; done += kBlock) {
+        bytes.erase(0, bytes.size() - std::min(bytes.size(), kOverlap));
+        const size_t kept = bytes.size();
+        bytes.resize(kept + kBlock);
+        stream.read(bytes.data() + kept, std::streamsize(kBlock));
+        bytes.resize(kept + size_t(stream.gcount()));
+        at = bytes.find(mark);
+        // Its end may be in the next block, which then has its beginning, too.
+        if (at != std::string::npos && stream && bytes.size() - at < kOverlap) at = std::string::npos;
+    }
     if (at == std::string::npos)
         throw InputError(
             fmt::format("{}: error: this shared object is no Lampyris plugin: it has no symbol "
                         "{}; lampyris_add_plugin() in CMake makes it",
                         file, kSymbol));
-    return bytes.substr(at + mark.size(), bytes.find('\0', at) - at - mark.size());
+    constexpr size_t kLongest = 200;
+    const std::string abi = bytes.substr(at + mark.size(), kLongest);
+    return abi.substr(0, abi.find('\0'));
 }
 
 }  // namespace
@@ -58,7 +72,7 @@ void load_plugin(const std::string& file) {
         throw InputError(
             fmt::format("{}: error: this plugin was built for Lampyris {}, and this is Lampyris {}; "
                         "build it again",
-                        file, abi, plugin_abi()));
+                        file, shown(abi), plugin_abi()));
     // Never closed: registries and kernels keep pointers into it.
     if (!dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL)) throw InputError(fmt::format("{}: error: {}", file, dlerror()));
     loaded.insert(path);
