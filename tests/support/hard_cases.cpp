@@ -1,0 +1,251 @@
+#include "support/hard_cases.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace lampyris::test {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+const std::vector<std::string> kAll{"path", "bdpt", "vcm", "mlt", "sppm"};
+const std::vector<std::string> kPhotons{"sppm"};
+
+// Looks down at a square of the plane y = 0 with the given half width, from below all lamps, and with the pixels' sides `pixels`.
+std::string view(double half, double height, const std::string& pixels = "8 8") {
+    const size_t space = pixels.find(' ');
+    return fmt::format(
+        "LookAt 0 {0} 0  0 0 0  0 0 1\nCamera \"orthographic\" \"float screenwindow\" [ -{1} {1} -{1} {1} ]\n"
+        "Film \"rgb\" \"integer xresolution\" {2} \"integer yresolution\" {3}\n"
+        "PixelFilter \"box\" \"float xradius\" 0.5 \"float yradius\" 0.5\nSampler \"independent\"\nWorldBegin\n",
+        height, half, pixels.substr(0, space), pixels.substr(space + 1));
+}
+
+std::string sky(double radiance) {
+    return fmt::format("LightSource \"infinite\" \"rgb L\" [ {0} {0} {0} ]\n", radiance);
+}
+
+std::string diffuse(double reflectance) {
+    return fmt::format("Material \"diffuse\" \"rgb reflectance\" [ {0} {0} {0} ]\n", reflectance);
+}
+
+std::string floor(double half) {
+    return fmt::format(
+        "Shape \"trianglemesh\" \"point3 P\" [ -{0} 0 -{0} -{0} 0 {0} {0} 0 {0} {0} 0 -{0} ] \"integer indices\" "
+        "[ 0 1 2 0 2 3 ]\n",
+        half);
+}
+
+std::string point(double intensity, double height) {
+    return fmt::format("LightSource \"point\" \"rgb I\" [ {0:.9g} {0:.9g} {0:.9g} ] \"point3 from\" [ 0 {1} 0 ]\n",
+                       intensity, height);
+}
+
+// A spherical lamp above the origin.
+std::string lamp(double radius, double height, double radiance) {
+    return fmt::format(
+        "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [ {2:.9g} {2:.9g} {2:.9g} ]\nTranslate 0 {1:.9g} 0 Shape "
+        "\"sphere\" \"float radius\" {0:.9g} AttributeEnd\n",
+        radius, height, radiance);
+}
+
+// The mean irradiance on the square [-half, half]^2 of a point source is its intensity times the square's solid angle over its
+// area.
+double mean_irradiance(double intensity, double height, double half) {
+    const double angle = 4.0 * std::atan(half * half / (height * std::sqrt(height * height + 2.0 * half * half)));
+    return intensity * angle / (4.0 * half * half);
+}
+
+// A box of glass from (-2, low, -2) to (2, high, 2).
+std::string slab(double low, double high) {
+    return fmt::format(
+        "Shape \"trianglemesh\" \"point3 P\" [ -2 {0:.9g} -2 2 {0:.9g} -2 2 {0:.9g} 2 -2 {0:.9g} 2 -2 {1:.9g} -2 2 "
+        "{1:.9g} -2 2 "
+        "{1:.9g} 2 -2 {1:.9g} 2 ] \"integer indices\" [ 0 1 2 0 2 3  4 6 5 4 7 6  0 5 1 0 4 5  1 6 2 1 5 6  2 7 3 2 6 "
+        "7  3 4 0 3 7 "
+        "4 ]\n",
+        low, high);
+}
+
+// A square [-1, 1]^2 of needles that meet in one corner: their angles are 3e-3 and less.
+std::string needles(int count) {
+    std::string points = "-1 0 -1", indices;
+    const auto add = [&](double x, double z) { points += fmt::format("  {:.9g} 0 {:.9g}", x, z); };
+    for (int i = 0; i <= count; ++i) add(1.0, -1.0 + 2.0 * i / count);
+    for (int i = 1; i <= count; ++i) add(1.0 - 2.0 * i / count, 1.0);
+    for (int i = 1; i <= 2 * count; ++i) indices += fmt::format(" 0 {} {}", i + 1, i);
+    return "Shape \"trianglemesh\" \"point3 P\" [ " + points + " ] \"integer indices\" [" + indices + " ]\n";
+}
+
+// A grid of squares whose vertices are the centres of the pixels of view(1, ..., "8 8").
+std::string grid() {
+    std::string points, indices;
+    for (int z = 0; z < 10; ++z)
+        for (int x = 0; x < 10; ++x) points += fmt::format(" {} 0 {}", (x - 4.5) / 4.0, (z - 4.5) / 4.0);
+    for (int z = 0; z < 9; ++z)
+        for (int x = 0; x < 9; ++x) {
+            const int a = 10 * z + x;
+            indices += fmt::format(" {} {} {} {} {} {}", a, a + 10, a + 11, a, a + 11, a + 1);
+        }
+    return "Shape \"trianglemesh\" \"point3 P\" [" + points + " ] \"integer indices\" [" + indices + " ]\n";
+}
+
+std::string glass(double eta) { return fmt::format("Material \"dielectric\" \"float eta\" {:.9g}\n", eta); }
+
+std::vector<HardCase> make_cases() {
+    std::vector<HardCase> cases;
+    // Under a sky of 1, what loses no light shows 1.
+    const auto in_furnace = [&](const std::string& name, const std::string& material, double tolerance,
+                                const std::string& settings = "maxdepth=5", uint32_t samples = 16) {
+        cases.push_back({name, view(0.7, 3) + sky(1) + material + "Shape \"sphere\" \"float radius\" 1\n", 1.0,
+                         tolerance, samples, settings, kAll});
+    };
+    in_furnace("an albedo of exactly 1", diffuse(1), 1e-5, "maxdepth=5", 128);
+    for (const double eta : {1.000001, 1.5, 4.0})
+        in_furnace(fmt::format("glass of index {}", eta), glass(eta), 1e-4, "maxdepth=100,rrdepth=100");
+    in_furnace(
+        "a mirror of roughness 1e-4",
+        "Material \"conductor\" \"rgb reflectance\" [ 1 1 1 ] \"float roughness\" 1e-4 \"bool remaproughness\" false\n",
+        1e-3);
+    for (const double gap : {1e-6, 1e-3})
+        cases.push_back({fmt::format("two slabs of glass, {} apart", gap),
+                         view(0.7, 5) + sky(1) + glass(1.5) + slab(0, 1) + slab(1 + gap, 2),
+                         1.0,
+                         1e-4,
+                         16,
+                         "maxdepth=100,rrdepth=100",
+                         {"path", "bdpt", "vcm", "sppm"}});
+    // A rod of glass whose far end shines: all light is reflected totally, up to 170 times. Of 250 lengths of paths, mlt tries each
+    // rarely.
+    cases.push_back(
+        {"170 total reflections",
+         "LookAt 0 0 0  0 0 1  0 1 0\nCamera \"perspective\" \"float fov\" 80\nFilm \"rgb\" \"integer xresolution\" 8 "
+         "\"integer yresolution\" 8\nPixelFilter \"box\" \"float xradius\" 0.5 \"float yradius\" 0.5\n"
+         "Sampler \"independent\"\nWorldBegin\n" +
+             std::string("AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [ 1 1 1 ] Material \"diffuse\" \"rgb "
+                         "reflectance\" [ 0 0 0 ] Shape \"trianglemesh\" \"point3 P\" [ "
+                         "-1.5 -1.5 199 -1.5 1.5 199 1.5 1.5 199 1.5 -1.5 199 ] \"integer indices\" [ 0 1 2 0 2 3 ] "
+                         "AttributeEnd\n") +
+             glass(1.5) +
+             "Shape \"trianglemesh\" \"point3 P\" [ -1 -1 -1 1 -1 -1 1 1 -1 -1 1 -1 -1 -1 200 1 -1 200 1 1 200 -1 1 "
+             "200 ] "
+             "\"integer indices\" [ 0 2 1 0 3 2  4 5 6 4 6 7  0 1 5 0 5 4  1 2 6 1 6 5  2 3 7 2 7 6  3 0 4 3 4 7 ]\n",
+         1.0,
+         1e-4,
+         16,
+         "maxdepth=250,rrdepth=250",
+         {"path", "bdpt", "vcm", "sppm"}});
+    // A floor of reflectance 0.5 under lamps: radiance is 0.5 / pi times the irradiance.
+    const auto under = [&](const std::string& name, const std::string& lamps, double irradiance, double tolerance,
+                           double half = 1, uint32_t samples = 64, double extent = 0) {
+        cases.push_back({name, view(half, 0.5 * half) + lamps + diffuse(0.5) + floor(extent > 0 ? extent : half),
+                         0.5 / kPi * irradiance, tolerance, samples, "maxdepth=1", kAll});
+    };
+    const double mean = mean_irradiance(1, 1, 1);
+    under("a lamp of 1e-5 of the floor", lamp(1e-5, 1, 1e10 / kPi), mean, 1e-4);
+    under("a lamp of 1e6 times the floor", lamp(1e6, 1e6 + 1, 1), kPi, 1e-3);
+    // sppm samples lights without regard to the BSDF, and so close to a sphere they are sampled by area: it finds the light rarely.
+    cases.back().integrators = {"path", "bdpt", "vcm", "mlt"};
+    under("a lamp of 1 mm in a scene of 1 km", lamp(5e-4, 1, 1 / (kPi * 25e-8)), mean, 1e-4, 1, 64, 500);
+    // vcm's radius is a share of the scene's, and larger than what the camera sees.
+    cases.back().integrators = {"path", "bdpt", "mlt", "sppm"};
+    under("a lamp of no power beside another", lamp(0.1, 2, 0) + point(0, 3) + point(1, 1), mean, 1e-4);
+    for (const double degrees : {0.5, 1e-4}) {
+        const double half_angle = degrees / 2 * kPi / 180, sine = std::sin(half_angle);
+        under(fmt::format("a sun of {} degrees", degrees), lamp(1000 * sine, 1000, 1 / (sine * sine)), kPi, 1e-4);
+    }
+    std::string many;
+    for (int i = 0; i < 100000; ++i) many += point(1e-5, 1);
+    under("100,000 lamps", many, mean, 1e-4);
+    under("a lamp 1e12 times as bright as another", point(1e-6, 0.6) + point(1e6, 1), 1e6 * mean, 1e-4);
+    // Floors under a sky of 1 show their reflectance; where one leaks, the sky.
+    const auto whole = [&](const std::string& name, const std::string& text, double tolerance) {
+        cases.push_back({name, text, 0.5, tolerance, 64, "maxdepth=2", kAll});
+    };
+    whole("needles with angles of 3e-3", view(0.95, 1) + sky(1) + diffuse(0.5) + needles(300), 1e-5);
+    cases.back().samples = 16, cases.back().power = 0.1;  // rays meet hundreds of boxes
+    std::string centres = view(1, 1);
+    centres.replace(centres.find("0.5 \"float yradius\" 0.5"), 23, "1e-5 \"float yradius\" 1e-5");
+    whole("rays through vertices", centres + sky(1) + diffuse(0.5) + grid(), 1e-5);
+    whole("a grazing angle of 2e-6",
+          "LookAt 0 2e-3 0  1000 0 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [ -1 1 -2e-4 2e-4 ]\n"
+          "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\nPixelFilter \"box\" \"float xradius\" 0.5 "
+          "\"float "
+          "yradius\" 0.5\nSampler \"independent\"\nWorldBegin\n" +
+              sky(1) + diffuse(0.5) + floor(2000),
+          1e-5);
+    for (const std::string pixels : {"1 1", "16384 1", "1 16384"}) {
+        std::string film = view(0.7, 3, pixels);
+        whole("a film of " + pixels, film + sky(1) + diffuse(0.5) + "Shape \"sphere\" \"float radius\" 1\n", 1e-5);
+        if (pixels == "1 1") cases.back().samples = 1024, cases.back().power = 0.1;
+        if (pixels != "1 1") cases.back().samples = 1, cases.back().integrators = {"path", "bdpt", "vcm", "sppm"};
+    }
+    // Photons alone: `direct=photons` has no light samples.
+    const auto by_photons = [&](const std::string& name, const std::string& lamps, double irradiance, double tolerance,
+                                const std::string& settings, uint32_t passes) {
+        cases.push_back({name, view(1, 0.5) + lamps + diffuse(0.5) + floor(3), 0.5 / kPi * irradiance, tolerance,
+                         passes, "maxdepth=1,direct=photons," + settings, kPhotons});
+    };
+    by_photons("one photon a pass", point(1, 1), mean, 0.01, "radius=0.05,photonsperiteration=1", 6000);
+    cases.back().power = 0.4;
+    const std::string disk =
+        "AttributeBegin Translate 0 {} 0 Rotate {} 1 0 0 AreaLightSource \"diffuse\" \"rgb L\" [ 1e8 1e8 1e8 ] Shape "
+        "\"disk\" "
+        "\"float radius\" 1e-4 AttributeEnd\n";
+    by_photons("all photons in one cell", fmt::format(fmt::runtime(disk), 1e-4, 90), kPi * kPi / 4, 0.01,
+               "radius=0.5,alpha=1,photonsperiteration=5000", 128);
+    cases.back().power = 0.15;
+    by_photons("no photon at all", fmt::format(fmt::runtime(disk), 1e-4, -90), 0, 0,
+               "radius=0.05,photonsperiteration=1000", 16);
+    return cases;
+}
+
+}  // namespace
+
+const std::vector<HardCase>& hard_cases() {
+    static const std::vector<HardCase> cases = make_cases();
+    return cases;
+}
+
+Measured measure_case(const HardCase& hard, const std::string& integrator, const std::string& backend) {
+    RenderSettings settings;
+    settings.backend = backend;
+    settings.samples = hard.samples;
+    settings.integrator = integrator + ":" + hard.settings;
+    // A pass of mlt is eight mutations a pixel, and a bootstrap.
+    if (integrator == "mlt") settings.samples = std::clamp(hard.samples / 2, 8u, 64u);
+    // mlt has no roulette, and its paths one number per dimension.
+    const size_t roulette = settings.integrator.find(",rrdepth");
+    if (integrator == "mlt" && roulette != std::string::npos) settings.integrator.resize(roulette);
+    settings.share_device = true;
+    Measured measured{0, 0, 0};
+    std::vector<double> means;
+    for (const Rendered& image : render_text_seeds(hard.scene, settings, kSeeds)) {
+        means.push_back(image.mean_luminance());
+        measured.non_finite += image.summary.non_finite;
+    }
+    for (const double mean : means) measured.mean += mean / kSeeds;
+    double squares = 0.0;
+    for (const double mean : means) squares += (mean - measured.mean) * (mean - measured.mean);
+    measured.standard_error = std::sqrt(squares / (kSeeds - 1) / kSeeds);
+    return measured;
+}
+
+void expect_case(const HardCase& hard, const std::string& integrator, const std::string& backend) {
+    const Measured measured = measure_case(hard, integrator, backend);
+    const double error = measured.mean - hard.radiance;
+    fmt::print("{} | {} | {} | {:.6g} | {:.6g} | {:+.1e} | {:.1e}\n", hard.name, integrator, backend, hard.radiance,
+               measured.mean, error / std::max(hard.radiance, 1e-30),
+               measured.standard_error / std::max(hard.radiance, 1e-30));
+    EXPECT_EQ(measured.non_finite, 0u) << hard.name << ", " << integrator << " on " << backend;
+    EXPECT_LE(std::abs(error), hard.tolerance * hard.radiance + kErrors * measured.standard_error)
+        << hard.name << ", " << integrator << " on " << backend << ": " << measured.mean << " +- "
+        << measured.standard_error << ", not " << hard.radiance;
+    // What the comparison can show.
+    EXPECT_LE(kErrors * measured.standard_error, hard.power * hard.radiance + 1e-30) << hard.name << ", " << integrator;
+}
+
+}  // namespace lampyris::test
