@@ -1,5 +1,6 @@
 // lampyris compare IMAGE REF: how far an image is from its reference.
 #include "commands/command.h"
+#include "commands/console.h"
 #include "core/base/error.h"
 #include "core/image/image_io.h"
 #include "core/image/metrics.h"
@@ -32,25 +33,25 @@ std::string flip_formula(const Comparison& comparison) {
 
 void print_table(const CompareOptions& options, const Comparison& comparison) {
     const Metrics& metrics = comparison.metrics;
-    fmt::print("image      {}\nreference  {}\n", options.image, options.reference);
-    fmt::print("pixels     {}x{}", comparison.width, comparison.height);
-    if (!options.crop.empty()) fmt::print(" (crop {})", fmt::join(options.crop, ","));
-    fmt::print("\n\n");
+    print("image      {}\nreference  {}\n", options.image, options.reference);
+    print("pixels     {}x{}", comparison.width, comparison.height);
+    if (!options.crop.empty()) lampyris::print(" (crop {})", fmt::join(options.crop, ","));
+    print("\n\n");
     const auto row = [](const char* name, double value, const std::string& formula) {
-        fmt::print("{:<16} {:>12.6g}   {}\n", name, value, formula);
+        print("{:<16} {:>12.6g}   {}\n", name, value, formula);
     };
     for (const MetricFormula& formula : metric_formulas()) row(formula.name, metrics.*formula.value, formula.formula);
     row("FLIP", comparison.flip.mean, flip_formula(comparison));
     const auto means = [](const char* name, const std::array<double, 3>& mean) {
-        fmt::print("{:<16} {:>12.6g} {:>12.6g} {:>12.6g}   R G B\n", name, mean[0], mean[1], mean[2]);
+        print("{:<16} {:>12.6g} {:>12.6g} {:>12.6g}   R G B\n", name, mean[0], mean[1], mean[2]);
     };
-    fmt::print("\n");
+    print("\n");
     means("mean", metrics.mean);
     means("reference mean", metrics.reference_mean);
-    fmt::print("\nI: image, R: reference, scene-linear; means are over pixels and channels.\n");
+    print("\nI: image, R: reference, scene-linear; means are over pixels and channels.\n");
     if (metrics.non_finite > 0)
-        fmt::print("{} of {} pixels hold NaN or Inf in one of the images; they are left out of every number above.\n",
-                   metrics.non_finite, metrics.non_finite + metrics.pixels);
+        print("{} of {} pixels hold NaN or Inf in one of the images; they are left out of every number above.\n",
+              metrics.non_finite, metrics.non_finite + metrics.pixels);
 }
 
 void print_json(const CompareOptions& options, const Comparison& comparison) {
@@ -73,7 +74,7 @@ void print_json(const CompareOptions& options, const Comparison& comparison) {
     json["reference_mean"] = metrics.reference_mean;
     json["non_finite"] = metrics.non_finite;
     // A file's name may hold any bytes; JSON is UTF-8.
-    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+    print_text(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 int compare(const CompareOptions& options) {

@@ -1,5 +1,7 @@
 #include "commands/console.h"
 
+#include "core/base/error.h"
+
 #include <fcntl.h>
 #include <poll.h>
 #include <unistd.h>
@@ -40,7 +42,7 @@ void say(std::string_view text, bool waits, bool in_place) {
     else if (line_is_open)
         all = "\n";
     line_is_open = in_place && !text.empty() && text.back() != '\n';
-    all += text;
+    all += escaped(text);
     write_all(all, waits);
 }
 
@@ -48,6 +50,7 @@ void say(std::string_view text, bool waits, bool in_place) {
 
 void prepare_console() {
     std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);  // a file that becomes too large is an error like a full disk
     // Opened in the wrong mode, so that writes there fail instead of seeming to succeed.
     for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
         if (::fcntl(fd, F_GETFD) < 0 && errno == EBADF) ::open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY);
@@ -56,6 +59,8 @@ void prepare_console() {
 void tell_text(std::string_view text) { say(text, false, false); }
 void tell_last(std::string_view text) { say(text, true, false); }
 void tell_in_place(std::string_view text) { say(text, false, true); }
+
+void print_escaped(std::string_view text) { print_text(escaped(text)); }
 
 void print_text(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stdout); }
 

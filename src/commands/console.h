@@ -1,6 +1,7 @@
 // Output of commands on standard error and standard output. Either may be unusable: closed, full, a terminal that is gone, a
 // pipe that nobody reads. A message then fails silently, because no message decides whether an image is written. Errors of
-// standard output are checked once, at the program's end.
+// standard output are checked once, at the program's end. But for print_text, which is for JSON, names of strangers appear escaped
+// (core/base/error.h), so that a terminal does not obey them.
 #pragma once
 
 #include <fmt/format.h>
@@ -28,10 +29,11 @@ void tell(fmt::format_string<Values...> format, Values&&... values) {
 
 // On standard output.
 void print_text(std::string_view text);
+void print_escaped(std::string_view text);
 
 template <typename... Values>
 void print(fmt::format_string<Values...> format, Values&&... values) {
-    print_text(fmt::format(format, std::forward<Values>(values)...));
+    print_escaped(fmt::format(format, std::forward<Values>(values)...));
 }
 
 }  // namespace lampyris

@@ -1,6 +1,7 @@
 // lampyris describe SCENE: the effects that the scene needs, the directives that need them, and their cost.
 #include "commands/command.h"
 #include "commands/console.h"
+#include "commands/render_options.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/render/pbrt_integrators.h"
@@ -23,6 +24,7 @@ constexpr const char* kDescribeSchema = "lampyris.describe/1";
 
 struct DescribeOptions {
     std::string scene;
+    std::vector<std::string> allowed;
     bool json = false, skip_unsupported = false;
 };
 
@@ -69,42 +71,41 @@ void print_table(const LoadedScene& loaded) {
     const Scene& scene = loaded.scene;
     const Counts counts = count(scene);
     const std::array<int, 4>& crop = loaded.settings.crop;
-    fmt::print("scene        {}\n", scene.name);
-    fmt::print("picture      {}x{}", scene.width(), scene.height());
+    print("scene        {}\n", scene.name);
+    print("picture      {}x{}", scene.width(), scene.height());
     if (crop != std::array<int, 4>{0, 0, int(scene.width()), int(scene.height())})
-        fmt::print(", of which {},{} to {},{}", crop[0], crop[1], crop[2], crop[3]);
-    fmt::print(", {} a pixel ({})\n", counted(uint64_t(loaded.settings.samples_per_pixel), "sample"),
-               loaded.settings.sampler);
+        print(", of which {},{} to {},{}", crop[0], crop[1], crop[2], crop[3]);
+    print(", {} a pixel ({})\n", counted(uint64_t(loaded.settings.samples_per_pixel), "sample"),
+          loaded.settings.sampler);
     const std::string& asked = loaded.settings.integrator.type;
     const std::string renders = rendering_integrator(asked);
-    fmt::print("integrator   {}{}\n", asked, renders == asked ? "" : fmt::format(" (rendered by {})", renders));
-    fmt::print("shapes       {}, {}, {} in {}; {}", counted(counts.triangles, "triangle"),
-               counted(counts.patches, "patch", "patches"), counted(counts.quadrics, "quadric"),
-               counted(scene.geometries.size(), "geometry", "geometries"),
-               counted(scene.instances.size() - 1, "instance"));
-    if (scene.instances.size() > 1) fmt::print(" ({} in all)", counted(counts.triangles_with_instances, "triangle"));
-    fmt::print("\nlights       {}, of which {} infinite\n", scene.lights.size(), scene.record.infinite_lights);
-    fmt::print("materials    {}; {}, {}\n", scene.materials.size(),
-               counted(scene.texture_ops.size(), "texture operation"), counted(scene.images.size(), "image"));
-    fmt::print("memory       {:.1f} MB before acceleration structures\n\n", double(counts.memory) * 1e-6);
+    print("integrator   {}{}\n", asked, renders == asked ? "" : fmt::format(" (rendered by {})", renders));
+    print("shapes       {}, {}, {} in {}; {}", counted(counts.triangles, "triangle"),
+          counted(counts.patches, "patch", "patches"), counted(counts.quadrics, "quadric"),
+          counted(scene.geometries.size(), "geometry", "geometries"), counted(scene.instances.size() - 1, "instance"));
+    if (scene.instances.size() > 1) print(" ({} in all)", counted(counts.triangles_with_instances, "triangle"));
+    print("\nlights       {}, of which {} infinite\n", scene.lights.size(), scene.record.infinite_lights);
+    print("materials    {}; {}, {}\n", scene.materials.size(), counted(scene.texture_ops.size(), "texture operation"),
+          counted(scene.images.size(), "image"));
+    print("memory       {:.1f} MB before acceleration structures\n\n", double(counts.memory) * 1e-6);
 
     size_t name_width = 6, asked_width = 8;
     for (const EffectInfo& info : known_effects())
         name_width = std::max(name_width, std::string_view(info.name).size());
     for (const EffectRequest& request : scene.effects.requests())
         asked_width = std::max(asked_width, request.asked_by.size());
-    fmt::print("{:<{}}  {:<9}  {:<{}}  {}\n", "effect", name_width, "simulated", "asked by", asked_width, "cost");
+    print("{:<{}}  {:<9}  {:<{}}  {}\n", "effect", name_width, "simulated", "asked by", asked_width, "cost");
     for (const EffectInfo& info : known_effects())
         if (const EffectRequest* request = request_of(scene.effects, info.effect))
-            fmt::print("{:<{}}  {:<9}  {:<{}}  {}\n", info.name, name_width, "yes", request->asked_by, asked_width,
-                       info.cost);
+            print("{:<{}}  {:<9}  {:<{}}  {}\n", info.name, name_width, "yes", request->asked_by, asked_width,
+                  info.cost);
     for (const std::string& what : scene.unsupported)
-        fmt::print("{:<{}}  {:<9}  {}\n", "(unsupported)", name_width, "no", what);
+        print("{:<{}}  {:<9}  {}\n", "(unsupported)", name_width, "no", what);
     std::string rest;
     for (const EffectInfo& info : known_effects())
         if (!request_of(scene.effects, info.effect)) rest += fmt::format("{}{}", rest.empty() ? "" : ", ", info.name);
-    if (!rest.empty()) fmt::print("\nnot needed by this scene: {}\n", rest);
-    for (const std::string& note : scene.notes) fmt::print("note: {}\n", note);
+    if (!rest.empty()) print("\nnot needed by this scene: {}\n", rest);
+    for (const std::string& note : scene.notes) print("note: {}\n", note);
 }
 
 void print_json(const LoadedScene& loaded) {
@@ -147,11 +148,13 @@ void print_json(const LoadedScene& loaded) {
     json["unsupported"] = scene.unsupported;
     json["notes"] = scene.notes;
     json["warnings"] = loaded.warnings;
-    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+    print_text(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 int describe(const DescribeOptions& options) {
-    LoadedScene loaded = load_scene(SceneSource::of_file(options.scene), {}, options.skip_unsupported);
+    SceneSource source = SceneSource::of_file(options.scene);
+    source.allowed_folders = allowed_folders(options.allowed);
+    LoadedScene loaded = load_scene(std::move(source), {}, options.skip_unsupported);
     for (std::string& note : integrator_notes(loaded.settings.integrator, loaded.scene, *loaded.sources))
         loaded.scene.notes.push_back(std::move(note));
     for (const std::string& warning : loaded.warnings) tell("{}\n", warning);
@@ -168,6 +171,7 @@ void add_describe(CLI::App& parent, std::function<int()>& run) {
         parent.add_subcommand("describe", "Show what a scene needs, which parts need it, and what it costs");
     command->add_option("SCENE", options->scene, "a pbrt-v4 scene file")->required();
     command->add_flag("--json", options->json, "print JSON (docs/describe.md)");
+    add_allow_option(*command, options->allowed);
     command->add_flag("--skip-unsupported", options->skip_unsupported,
                       "leave out what is not supported, instead of failing");
     command->callback([&run, options] { run = [options] { return describe(*options); }; });

@@ -4,14 +4,17 @@
 #include "core/base/error.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <mutex>
+#include <optional>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -19,7 +22,8 @@
 namespace lampyris {
 namespace {
 
-enum class State { kNothingDone, kImageBegun, kEnding };
+using Clock = std::chrono::steady_clock;
+enum class State { kNothingDone, kImageBegun, kWriting, kWritten, kEnding };
 
 // A signal handler may do almost nothing. It wakes a thread, which may do anything, even while the others are in a driver's
 // compiler.
@@ -28,11 +32,17 @@ std::atomic<State> state{State::kNothingDone};
 std::mutex mutex;
 std::vector<std::string> outputs;
 Watch* rendering = nullptr;
+std::function<std::string()> write_so_far;
 std::thread watcher;
+std::atomic<bool> is_busy{false};  // the watcher, with a message that nobody reads, or a slow disk
 
 constexpr char kStop = 0;
+constexpr std::chrono::milliseconds kPatience{1500};  // more than Watch::check_cancelled has
+constexpr std::chrono::milliseconds kLastWords{500};  // for messages, which may wait for a reader
+constexpr int kTickMs = 100;
 
 extern "C" void on_interrupt(int) {
+    if (is_busy.load()) ::_exit(int(ExitCode::kInterrupted));
     const int saved = errno;
     const char signal = 1;
     [[maybe_unused]] const ssize_t written = ::write(wake[1], &signal, 1);
@@ -56,19 +66,46 @@ std::string older_images() {
     std::_Exit(int(ExitCode::kInterrupted));
 }
 
+bool takes_over(State from) { return state.compare_exchange_strong(from, State::kEnding); }
+
+// Whether there is a signal to read within the time; a negative one is without end.
+bool wait_for_signal(int milliseconds) {
+    pollfd ready{wake[0], POLLIN, 0};
+    int count;
+    do count = ::poll(&ready, 1, milliseconds);
+    while (count < 0 && errno == EINTR);
+    return count != 0;
+}
+
+// After the first signal: ends the program if it does not do so by itself.
+void check_progress(Clock::time_point asked_at, Clock::time_point& written_at) {
+    const Clock::time_point now = Clock::now();
+    if (state != State::kWritten) written_at = now;
+    if (now - written_at > kLastWords) std::_Exit(int(ExitCode::kInterrupted));
+    if (now - asked_at < kPatience || !takes_over(State::kImageBegun)) return;
+    is_busy = true;
+    end(write_so_far());
+}
+
 void watch() {
-    bool asked = false;
+    std::optional<Clock::time_point> asked_at;
+    Clock::time_point written_at;
     for (char signal = 0;;) {
+        is_busy = false;
+        if (!wait_for_signal(asked_at ? kTickMs : -1)) {
+            check_progress(*asked_at, written_at);
+            continue;
+        }
         const ssize_t got = ::read(wake[0], &signal, 1);
         if (got < 0 && errno == EINTR) continue;
         if (got <= 0 || signal == kStop) return;
-        State nothing = State::kNothingDone;
-        if (state.compare_exchange_strong(nothing, State::kEnding))
+        is_busy = true;
+        if (takes_over(State::kNothingDone))
             end("interrupted before a pass was finished: nothing is written" + older_images());
-        if (asked) end("interrupted again: ended at once");
-        asked = true;
-        tell("interrupted: what is done is written\n");
+        if (asked_at) end("interrupted again: ended at once");
+        asked_at = written_at = Clock::now();
         rendering->interrupt();
+        tell("interrupted: what is done is written\n");
     }
 }
 
@@ -79,8 +116,10 @@ bool is_ignored(int signal) {
 
 }  // namespace
 
-InterruptWatch::InterruptWatch(std::vector<std::string> names, Watch& watch_of_rendering) {
+InterruptWatch::InterruptWatch(std::vector<std::string> names, Watch& watch_of_rendering,
+                               std::function<std::string()> write) {
     set_outputs(std::move(names));
+    write_so_far = std::move(write);
     rendering = &watch_of_rendering;
     if (::pipe2(wake, O_CLOEXEC) != 0) return;  // if this fails, signals have their default effect
     watcher = std::thread(watch);
@@ -103,10 +142,19 @@ void InterruptWatch::set_outputs(std::vector<std::string> names) {
     outputs = std::move(names);
 }
 
-void InterruptWatch::image_begins() {
-    State nothing = State::kNothingDone;
-    if (state.compare_exchange_strong(nothing, State::kImageBegun) || nothing == State::kImageBegun) return;
+namespace {
+
+void enter(State from, State to) {
+    if (state.compare_exchange_strong(from, to) || from != State::kEnding) return;
     for (;;) ::pause();  // the watcher ends the program
 }
+
+}  // namespace
+
+void InterruptWatch::image_begins() { enter(State::kNothingDone, State::kImageBegun); }
+
+void InterruptWatch::writing_begins() { enter(State::kImageBegun, State::kWriting); }
+
+void InterruptWatch::written() { enter(State::kWriting, State::kWritten); }
 
 }  // namespace lampyris

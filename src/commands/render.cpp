@@ -8,18 +8,24 @@
 #include "commands/replay.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/rescue.h"
 #include "core/base/text.h"
 #include "core/image/image_io.h"
 #include "core/render/render.h"
 #include "core/render/statistics.h"
+#include "core/scene/scene_folder.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <chrono>
+#include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <system_error>
 #include <utility>
 
@@ -31,6 +37,11 @@ std::vector<std::string> choose_outputs(const RenderOptions& options, const Scen
     if (outputs.empty() && !options.request.replay) {
         if (settings.output.empty())
             throw InputError("error: no output: name an image with -o IMAGE.exr (or .pfm, .png)");
+        // A stranger's scene does not choose which file of the user is replaced.
+        if (!SceneFolder(".").why_refused(settings.output).empty())
+            throw InputError(fmt::format(
+                "error: the scene wants to write '{}', which is outside of the working folder: name an image with -o",
+                shown(settings.output)));
         outputs.push_back(settings.output);
     }
     return outputs;
@@ -83,7 +94,9 @@ void print_summary(const RunRecord& run, const std::vector<std::string>& outputs
 class ConsoleObserver final : public RenderObserver {
  public:
     explicit ConsoleObserver(const RenderOptions& options)
-        : options_(options), interrupts_(options.outputs, *this), compile_display_(options.quiet) {}
+        : options_(options),
+          compile_display_(options.quiet),
+          interrupts_(options.outputs, *this, [this] { return write_so_far(); }) {}
 
     void warning(const std::string& text) override {
         if (!options_.quiet) tell("{}\n", text);
@@ -116,38 +129,79 @@ class ConsoleObserver final : public RenderObserver {
         }
     }
 
+    void written() { interrupts_.written(); }
+    void passes_end() override { interrupts_.writing_begins(); }
+    void fails_after(const RenderOutcome& outcome) override {
+        if (replays()) return;
+        write(outcome);
+        tell("the rendering failed: what there was after {} is written\n", passes_of(outcome));
+    }
+
+    // All of them, even if one cannot be written; then throws MachineError.
     void write(const RenderOutcome& outcome) const {
-        for (const std::string& output : outputs_) {
-            const WriteResult written = write_image(output, outcome.image, options_.write);
-            if (written.clamped > 0)
-                tell("warning: {}: {} numbers were larger than a half float holds and were cut to 65504\n", output,
-                     written.clamped);
-        }
+        std::string failures;
+        const auto attempt = [&](const auto& write_one) {
+            try {
+                write_one();
+            } catch (const MachineError& error) {
+                failures += (failures.empty() ? "" : "\n") + std::string(error.what());
+            }
+        };
+        for (const std::string& output : outputs_)
+            attempt([&] {
+                const WriteResult written = write_image(output, outcome.image, options_.write);
+                if (written.clamped > 0)
+                    tell("warning: {}: {} numbers were larger than a half float holds and were cut to 65504\n", output,
+                         written.clamped);
+            });
         if (!options_.statistics_file.empty())
-            write_file_atomically(options_.statistics_file, statistics_json(outcome.record).dump(2) + "\n");
+            attempt([&] {
+                const std::string text =
+                    statistics_json(outcome.record).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
+                    "\n";
+                write_file_or_rescue(options_.statistics_file, std::as_bytes(std::span(text)), "file of statistics");
+            });
+        if (!failures.empty()) throw MachineError(failures);
     }
 
     const std::vector<std::string>& outputs() const { return outputs_; }
 
  private:
+    static std::string passes_of(const RenderOutcome& outcome) {
+        return counted(outcome.record.progress.passes, "pass", "passes");
+    }
+    // In another thread, while the rendering does not end. Returns the message to end with.
+    std::string write_so_far() {
+        constexpr std::chrono::milliseconds kPatience{200};
+        try {
+            const auto outcome = outcome_so_far(kPatience, true);
+            if (!outcome) return "the pass does not end, and the film cannot be read: nothing is written";
+            write(*outcome);
+            return fmt::format("the pass does not end: what there was after {} is written", passes_of(*outcome));
+        } catch (const std::exception& error) {
+            return error.what();
+        }
+    }
     bool replays() const { return options_.request.replay.has_value(); }
     const RenderOptions& options_;
-    InterruptWatch interrupts_;
     CompileDisplay compile_display_;
     std::optional<ProgressDisplay> display_;
     std::vector<std::string> outputs_;
     bool write_failed_ = false;
+    InterruptWatch interrupts_;  // the last one: its thread uses the others
 };
 
 int render(const RenderOptions& options) {
     ConsoleObserver observer(options);
     RenderOutcome outcome = render(options.request, observer);
     if (options.request.replay) {
-        print("{}", replay_text(outcome, *options.request.replay));
+        print_text(replay_text(outcome, *options.request.replay));
         return int(ExitCode::kDone);
     }
     observer.write(outcome);
+    observer.written();
     if (!options.quiet) print_summary(outcome.record, observer.outputs());
+    std::fflush(stdout);  // here, where a signal still ends the program if nobody reads it
     return int(outcome.record.ended == RenderEnd::kInterrupted ? ExitCode::kInterrupted : ExitCode::kDone);
 }
 

@@ -10,7 +10,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <limits>
+#include <string_view>
+#include <system_error>
 #include <utility>
 
 namespace lampyris {
@@ -89,6 +93,7 @@ void RenderOptions::tell_what_a_replay_ignores() const {
 void RenderOptions::finish() {
     load_plugins(plugins);
     request.scene = SceneSource::of_file(texts.scene);
+    request.scene.allowed_folders = allowed_folders(allowed);
     if (!texts.resolution.empty()) {
         const std::vector<int> size =
             parse_integers(texts.resolution, 'x', 2, "--resolution", "WIDTHxHEIGHT, for example 640x480");
@@ -107,7 +112,8 @@ void RenderOptions::finish() {
     BudgetLimits& limits = request.limits;
     if (!texts.every.empty()) request.checkpoint_every_s = every_s = parse_duration(texts.every);
     if (!texts.time.empty()) limits.seconds = parse_duration(texts.time);
-    if (!texts.max_memory.empty()) request.device_options.max_memory = parse_size(texts.max_memory);
+    if (!texts.max_memory.empty())
+        request.max_process_memory = request.device_options.max_memory = parse_size(texts.max_memory);
     for (const auto& [option, count] : {std::pair{"--spp", texts.spp}, std::pair{"--passes", texts.passes}})
         if (count && (*count < 1 || *count > kMostSamples))
             throw InputError(fmt::format("error: {} {}: expected 1 to {}", option, *count, kMostSamples));
@@ -196,10 +202,12 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
         ->type_name("DURATION")
         ->check(not_empty);
     command.add_option("--plugin", o.plugins, "Load a plugin; may be given several times")->type_name("FILE.so");
+    add_allow_option(command, o.allowed);
     command.add_flag("--skip-unsupported", o.request.skip_unsupported,
                      "Leave out what Lampyris does not simulate, and list it");
     command
-        .add_option("--max-memory", o.texts.max_memory, "Most memory for buffers and acceleration structures: 512M, 8G")
+        .add_option("--max-memory", o.texts.max_memory,
+                    "Most memory for the program; buffers that do not fit are not made: 512M, 8G")
         ->type_name("SIZE")
         ->check(not_empty);
     command.add_option("--view", o.write.view, "Display transform of a PNG")->capture_default_str()->type_name("NAME");
@@ -210,6 +218,34 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
     command.add_option("--set", o.texts.settings, "Any parameter: integrator.maxdepth=12, backend.ray_query=on")
         ->type_name("SECTION.KEY=VALUE");
     command.add_flag("-q,--quiet", o.quiet, "Print errors only");
+}
+
+void add_allow_option(CLI::App& command, std::vector<std::string>& folders) {
+    command
+        .add_option(
+            "--allow", folders,
+            "Let the scene read files in FOLDER, too, beyond its own folder; may be given several times, or as A:B; "
+            "LAMPYRIS_ALLOW has more")
+        ->type_name("FOLDER")
+        ->allow_extra_args(false);
+}
+
+std::vector<std::string> allowed_folders(const std::vector<std::string>& lists) {
+    std::vector<std::string> folders;
+    const auto add = [&](std::string_view list, const char* giver) {
+        while (!list.empty()) {
+            const std::string folder(list.substr(0, list.find(':')));
+            list.remove_prefix(std::min(folder.size() + 1, list.size()));
+            std::error_code ignored;
+            if (folder.empty()) continue;
+            if (!std::filesystem::is_directory(folder, ignored))
+                throw InputError(fmt::format("error: {}: there is no folder '{}'", giver, shown(folder)));
+            folders.push_back(folder);
+        }
+    };
+    for (const std::string& list : lists) add(list, "--allow");
+    if (const char* list = std::getenv("LAMPYRIS_ALLOW")) add(list, "LAMPYRIS_ALLOW");
+    return folders;
 }
 
 }  // namespace lampyris

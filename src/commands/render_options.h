@@ -18,7 +18,7 @@ struct RenderOptions {
     WriteOptions write;
     std::string statistics_file;
     double every_s = 0.0;  // between images of what is done so far; 0: none
-    std::vector<std::string> plugins;
+    std::vector<std::string> plugins, allowed;
     bool quiet = false;
 
     // Interprets the texts below; throws InputError. Loads the plugins.
@@ -32,6 +32,10 @@ struct RenderOptions {
 };
 
 void add_render_options(CLI::App& command, RenderOptions& options);
+// For every command that reads a scene.
+void add_allow_option(CLI::App& command, std::vector<std::string>& folders);
+// Those folders, of which each text may name several, and LAMPYRIS_ALLOW's. Throws InputError if there is no such folder.
+std::vector<std::string> allowed_folders(const std::vector<std::string>& lists);
 
 // "90", "30s", "5min", "2h", "500ms" in seconds; "8G", "512M", "1000" in bytes. Throw InputError that shows what is valid.
 double parse_duration(const std::string& text);

@@ -124,7 +124,7 @@ def test_a_folder_that_takes_no_files_is_the_machines_fault(program, scene):
 def test_too_little_memory_is_the_machines_fault(program, scene, tmp_path):
     assert_refused(run(program, scene, "-o", tmp_path / "o.exr", "--max-memory", "1K"), 2, "--max-memory")
     assert run(program, scene, "-o", tmp_path / "o.exr", "--max-memory", "1G").returncode == 0
-    done = run(program, scene, "-o", tmp_path / "o.exr", "--max-memory", "16M", "--resolution", "4000x4000")
+    done = run(program, scene, "-o", tmp_path / "o.exr", "--max-memory", "256M", "--resolution", "8000x8000")
     assert_refused(done, 2, "--max-memory", "film")
 
 

@@ -34,7 +34,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     Diagnostics diagnostics(*sources);
     diagnostics.set_skip_unsupported(size % 2 == 0);
     SceneDescription scene = parse_scene_text("fuzz.pbrt", std::string(reinterpret_cast<const char*>(data), size),
-                                              "/nonexistent", sources, diagnostics);
+                                              std::string("/nonexistent"), sources, diagnostics);
     for (const ShapeDescription& shape : scene.shapes) check(scene, shape);
     for (const ObjectDescription& object : scene.objects)
         for (const ShapeDescription& shape : object.shapes) check(scene, shape);

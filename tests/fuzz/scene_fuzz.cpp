@@ -92,7 +92,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     diagnostics.set_skip_unsupported(size % 2 == 0);
     try {
         SceneDescription description =
-            parse_scene_text("fuzz.pbrt", std::move(text), LAMPYRIS_FUZZ_FOLDER, sources, diagnostics);
+            parse_scene_text("fuzz.pbrt", std::move(text), std::string(LAMPYRIS_FUZZ_FOLDER), sources, diagnostics);
         const BuiltScene built = build_scene(std::move(description), {}, diagnostics);
         diagnostics.throw_if_errors();
         check(built.scene);

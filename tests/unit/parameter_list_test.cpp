@@ -14,7 +14,7 @@ struct Fixture {
 
     explicit Fixture(const std::string& parameters) {
         SceneDescription scene =
-            parse_scene_text("p", "WorldBegin Shape \"s\"\n" + parameters, "", sources, diagnostics);
+            parse_scene_text("p", "WorldBegin Shape \"s\"\n" + parameters, SceneFolder(), sources, diagnostics);
         if (!scene.shapes.empty()) list = std::move(scene.shapes[0].parameters);
     }
     std::string first_error() const { return diagnostics.has_errors() ? diagnostics.errors()[0] : ""; }

@@ -290,7 +290,7 @@ TEST(Parser, IncludeSharesTheStateAndImportDoesNot) {
     const SceneDescription scene = parse_scene_file(folder.path("main.pbrt"), sources, diagnostics);
     ASSERT_FALSE(diagnostics.has_errors()) << diagnostics.errors()[0];
     ASSERT_EQ(scene.shapes.size(), 5u);
-    EXPECT_EQ(scene.directory + "/", folder.path());
+    EXPECT_EQ(scene.folder.name() + "/", folder.path());
     expect_near(transform_point(scene.shapes[1].world_from_object.matrix[0], {0, 0, 0}), {1, 5, 0});
     expect_near(transform_point(scene.shapes[2].world_from_object.matrix[0], {0, 0, 0}), {1, 0, 0});
     EXPECT_EQ(scene.shapes[1].material, 1u);

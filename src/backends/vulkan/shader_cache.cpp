@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -100,7 +101,8 @@ void ShaderCache::store(const ContentHash& key, const Spirv& spirv) const {
     const Header header{kMagic, spirv.size(), checksum_of(key, spirv)};
     std::vector<std::byte> bytes(sizeof header + spirv.size() * sizeof(uint32_t));
     std::memcpy(bytes.data(), &header, sizeof header);
-    std::memcpy(bytes.data() + sizeof header, spirv.data(), spirv.size() * sizeof(uint32_t));
+    const auto content = std::as_bytes(std::span(spirv));
+    std::copy(content.begin(), content.end(), bytes.begin() + sizeof header);
     try {
         write_file_atomically(name.string(), std::span<const std::byte>(bytes));
     } catch (const MachineError&) {  // the cache only saves time

@@ -188,7 +188,7 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
     // At most a third of the letters may differ, so that only guesses are made that a reader would make, too.
     size_t best_distance = 2 * std::max<size_t>(1, word.size() / 3) + 1;
     for (const std::string& candidate : candidates) {
-        if (candidate.empty() || candidate.size() > kMaxWord) continue;
+        if (candidate.empty() || candidate.size() > kMaxWord || candidate == word) continue;
         const size_t longer = std::max(word.size(), candidate.size()),
                      shorter = std::min(word.size(), candidate.size());
         if (2 * (longer - shorter) >= best_distance) continue;
@@ -208,6 +208,57 @@ std::string list_of(const std::vector<std::string>& candidates) {
         text += (text.empty() ? "" : ", ") + candidates[i];
     if (candidates.size() > kMostListed) text += " and " + std::to_string(candidates.size() - kMostListed) + " more";
     return text;
+}
+
+namespace {
+
+// The length of the UTF-8 character at the beginning of a text, and its code; 0 if there is none.
+size_t decode_utf8(std::string_view text, uint32_t& code) {
+    const auto byte = [&](size_t i) { return uint32_t(static_cast<unsigned char>(text[i])); };
+    code = byte(0);
+    if (code < 0x80) return 1;
+    const size_t length = code >= 0xf0 && code < 0xf5   ? 4
+                          : code >= 0xe0 && code < 0xf0 ? 3
+                          : code >= 0xc2 && code < 0xe0 ? 2
+                                                        : 0;
+    if (length == 0 || text.size() < length) return 0;
+    code &= 0x7fu >> length;
+    for (size_t i = 1; i < length; ++i) {
+        if (!is_continuation(text[i])) return 0;
+        code = code << 6 | (byte(i) & 0x3fu);
+    }
+    const uint32_t least = length == 2 ? 0x80 : length == 3 ? 0x800 : 0x10000;
+    return code < least || (code >= 0xd800 && code < 0xe000) || code > 0x10ffff ? 0 : length;
+}
+
+bool is_harmless(uint32_t code) {
+    if (code < 0x20) return code == '\n' || code == '\t';
+    if (code >= 0x7f && code < 0xa0) return false;
+    const bool directs = code == 0x61c || code == 0x200e || code == 0x200f || (code >= 0x2028 && code <= 0x202e) ||
+                         (code >= 0x2066 && code <= 0x2069);
+    return !directs && code != 0xfeff;
+}
+
+}  // namespace
+
+std::string escaped(std::string_view text) {
+    constexpr const char* kDigits = "0123456789abcdef";
+    std::string result;
+    while (!text.empty()) {
+        uint32_t code = 0;
+        const size_t length = decode_utf8(text, code);
+        const std::string_view bytes = text.substr(0, std::max<size_t>(length, 1));
+        if (length > 0 && is_harmless(code)) {
+            result += bytes;
+        } else {
+            for (const char c : bytes) {
+                const auto value = static_cast<unsigned char>(c);
+                result += {'\\', 'x', kDigits[value >> 4], kDigits[value & 15]};
+            }
+        }
+        text.remove_prefix(bytes.size());
+    }
+    return result;
 }
 
 std::string shown(std::string_view text) {

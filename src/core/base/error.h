@@ -89,6 +89,9 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
 std::string list_of(const std::vector<std::string>& candidates);
 // Input in a form that is safe to show in a message: cut when long, without control characters.
 std::string shown(std::string_view text);
+// The text without anything that a terminal would obey, or that would change the order of what is read: control characters other than
+// line ends and tabulators, marks of writing direction, and bytes that are not UTF-8, become escapes such as \x1b.
+std::string escaped(std::string_view text);
 
 // Collects the errors and warnings of one scene, so that they are reported together, in the order in which a reader of the
 // scene meets their causes: by file (in the order of reading) and location, no matter in which order they were found.
@@ -104,6 +107,9 @@ class Diagnostics {
     void unsupported(Location location, std::string what, std::string hint = {});
     const Sources& sources() const { return *sources_; }
     void set_skip_unsupported(bool skip) { skip_unsupported_ = skip; }
+    // Most bytes of memory for the process while a scene is read (check_process_memory); 0: no limit.
+    void set_max_memory(uint64_t bytes) { max_memory_ = bytes; }
+    uint64_t max_memory() const { return max_memory_; }
 
     bool has_errors() const { return error_count_ > 0; }
     // Throws InputError with every error so far (at most kMaxShown in full, then a count).
@@ -141,6 +147,7 @@ class Diagnostics {
     static constexpr size_t kMostNamesCompared = 1000000;
     size_t names_compared_ = 0;
     bool skip_unsupported_ = false;
+    uint64_t max_memory_ = 0;
 };
 
 }  // namespace lampyris

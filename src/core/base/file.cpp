@@ -154,6 +154,8 @@ void write_file_atomically(const std::string& path, std::span<const std::byte> b
     struct stat info {};
     const bool exists = ::stat(target.c_str(), &info) == 0;
     if (exists && S_ISDIR(info.st_mode)) fail(path, EISDIR);
+    // Another file could take its place, but whoever protected it did not want that.
+    if (exists && ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0) fail(path, errno);
     if (exists && !S_ISREG(info.st_mode)) return write_directly(path, target, bytes);
     Unfinished file(folder_of(target), exists ? info.st_mode & 07777 : 0666);
     file.write(bytes);
@@ -170,6 +172,7 @@ void check_writable(const std::string& path) {
     struct stat info {};
     if (::stat(target.c_str(), &info) == 0) {
         if (S_ISDIR(info.st_mode)) throw InputError(fmt::format("cannot write '{}': it is a folder", path));
+        if (::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0) fail(path, errno);
         if (!S_ISREG(info.st_mode)) return;
     }
     const std::string folder = folder_of(target);

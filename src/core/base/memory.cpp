@@ -1,10 +1,14 @@
 #include "core/base/memory.h"
 
+#include "core/base/error.h"
+
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
 #include <limits>
+#include <string>
 
 namespace lampyris {
 
@@ -22,6 +26,23 @@ uint64_t machine_memory() {
         return most;
     }();
     return bytes;
+}
+
+uint64_t process_memory() {
+    std::ifstream status("/proc/self/status");
+    uint64_t kibibytes = 0;
+    for (std::string name; status >> name; status.ignore(std::numeric_limits<std::streamsize>::max(), '\n')) {
+        uint64_t value = 0;
+        if ((name == "RssAnon:" || name == "RssShmem:") && status >> value) kibibytes += value;
+    }
+    return kibibytes * 1024;
+}
+
+void check_process_memory(uint64_t most) {
+    const uint64_t now = most ? process_memory() : 0;
+    if (now <= most) return;
+    throw MachineError(
+        fmt::format("error: the program has {} MiB of memory, and --max-memory allows {} MiB", now >> 20, most >> 20));
 }
 
 }  // namespace lampyris

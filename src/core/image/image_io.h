@@ -18,6 +18,8 @@ struct ReadOptions {
     bool linear = true;
     // Only R, G, B (Image::rgb): grey expands, alpha and other channels are dropped.
     bool rgb = false;
+    // MachineError if the pixels alone would make the process larger; 0: no limit but the machine's.
+    uint64_t max_memory = 0;
 };
 
 // Throws an InputError that names the file and says why it cannot be read. Integers are scaled to [0, 1], except unsigned
@@ -48,8 +50,8 @@ void check_image_output(const std::string& path, const WriteOptions& options = {
 
 // Writes in the format of the extension. EXR: every channel, metadata as string attributes, tiled. PFM: R, G, B (or the only
 // channel). PNG: R, G, B as the view shows them, 8 bits. The file appears complete or not at all. If it cannot be written (disk
-// full, no permission), MachineError says why. The image is then saved in the folder for temporary files, if possible, and the
-// message says where.
+// full, no permission), MachineError says why. The image is then saved elsewhere, if possible, and the message says where
+// (core/base/rescue.h).
 WriteResult write_image(const std::string& path, const Image& image, const WriteOptions& options = {});
 
 // An 8-bit picture as it is, without a view: [height][width][3], sRGB. For error maps and plots.

@@ -75,7 +75,7 @@ Image::Storage storage_of(const OIIO::TypeDesc& type) {
 
 // A header that promises far more than the file can hold is damaged or hostile; trusting it would exhaust memory. No format
 // here packs more than about 8000 to 1 (deflate's 1032, times eight for one-bit pixels).
-void check_plausible(const std::string& path, const OIIO::ImageSpec& spec) {
+void check_plausible(const std::string& path, const OIIO::ImageSpec& spec, uint64_t max_memory) {
     constexpr uint64_t kFree = uint64_t(64) << 20, kMostPacked = 20000;
     const uint64_t promised = uint64_t(spec.image_bytes(true)), held = uint64_t(fs::file_size(path));
     if (promised > kFree && promised / kMostPacked > held)
@@ -87,6 +87,11 @@ void check_plausible(const std::string& path, const OIIO::ImageSpec& spec) {
         fail(path,
              fmt::format("{}x{} pixels of {} channels need {:.1f} GB, and this machine has {:.1f} GB of memory",
                          spec.width, spec.height, spec.nchannels, needed * 1e-9, double(machine_memory()) * 1e-9));
+    if (max_memory > 0 && needed + double(process_memory()) > double(max_memory))
+        throw MachineError(
+            fmt::format("error: the image '{}' has {}x{} pixels of {} channels, which need {} MiB, and --max-memory "
+                        "allows {} MiB for the whole program",
+                        path, spec.width, spec.height, spec.nchannels, uint64_t(needed) >> 20, max_memory >> 20));
 }
 
 // Colour of an EXR with primaries other than Rec.709's (its attribute "chromaticities") is converted to Rec.709.
@@ -107,7 +112,7 @@ void make_rec709(Image& image, const OIIO::ImageSpec& spec) {
     }
 }
 
-Image read_with_openimageio(const std::string& path) {
+Image read_with_openimageio(const std::string& path, uint64_t max_memory) {
     OIIO::ImageSpec hints;
     hints["oiio:UnassociatedAlpha"] = 1;  // do not multiply colour by alpha
     const auto input = OIIO::ImageInput::open(path, &hints);
@@ -116,7 +121,7 @@ Image read_with_openimageio(const std::string& path) {
     if (spec.deep) fail(path, "it is a deep image, which has no single value per pixel");
     if (spec.depth > 1) fail(path, "it is a volume, not an image");
     if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0) fail(path, "it has no pixels");
-    check_plausible(path, spec);
+    check_plausible(path, spec, max_memory);
 
     Image image(spec.width, spec.height, {spec.channelnames.begin(), spec.channelnames.end()});
     if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.pixels.data()))
@@ -163,7 +168,7 @@ Image read_image(const std::string& path, const ReadOptions& options) {
         fail(path, std::strerror(errno));
     }
     if (fs::is_regular_file(status) && fs::file_size(path) == 0) fail(path, "it is empty");
-    Image image = is_pfm(path) ? read_pfm(path) : read_with_openimageio(path);
+    Image image = is_pfm(path) ? read_pfm(path) : read_with_openimageio(path, options.max_memory);
     if (options.linear) make_linear(image);
     if (!options.rgb) return image;
     try {

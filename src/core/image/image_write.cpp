@@ -2,13 +2,13 @@
 // them.
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/rescue.h"
 #include "core/image/image_io.h"
 #include "core/image/pfm.h"
 
 #include <fmt/format.h>
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
@@ -102,27 +102,8 @@ Bytes encode_png(int width, int height, const std::vector<uint8_t>& rgb,
     return encode("png", spec, OIIO::TypeDesc::UINT8, rgb.data());
 }
 
-// The last resort: hours of work must not be lost because the disk is full or a folder was removed meanwhile.
-[[noreturn]] void rescue(const std::string& path, const Bytes& bytes, const MachineError& failure) {
-    std::string saved;
-    try {
-        saved =
-            (fs::temp_directory_path() / fmt::format("lampyris-{}-{}", ::getpid(), fs::path(path).filename().string()))
-                .string();
-        write_file_atomically(saved, std::as_bytes(std::span(bytes)));
-    } catch (const std::exception&) {
-        throw MachineError(
-            fmt::format("{} (and it could not be saved in the folder for temporary files either)", failure.what()));
-    }
-    throw MachineError(fmt::format("{}; the image was saved as '{}'", failure.what(), saved));
-}
-
-void write_or_rescue(const std::string& path, const Bytes& bytes) {
-    try {
-        write_file_atomically(path, std::as_bytes(std::span(bytes)));
-    } catch (const MachineError& failure) {
-        rescue(path, bytes, failure);
-    }
+void write(const std::string& path, const Bytes& bytes) {
+    write_file_or_rescue(path, std::as_bytes(std::span(bytes)), "image");
 }
 
 }  // namespace
@@ -150,7 +131,7 @@ WriteResult write_image(const std::string& path, const Image& image, const Write
         bytes = encode_png(image.width, image.height, display_bytes(image.rgb(), options.view, options.exposure),
                            image.metadata);
     }
-    write_or_rescue(path, bytes);
+    write(path, bytes);
     return result;
 }
 
@@ -158,7 +139,7 @@ void write_png(const std::string& path, int width, int height, const std::vector
                const std::map<std::string, std::string>& metadata) {
     if (extension_of(path) != ".png")
         throw InputError(fmt::format("cannot write '{}': this picture is written as .png only", path));
-    write_or_rescue(path, encode_png(width, height, rgb, metadata));
+    write(path, encode_png(width, height, rgb, metadata));
 }
 
 }  // namespace lampyris

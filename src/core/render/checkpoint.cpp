@@ -29,18 +29,6 @@ constexpr uint64_t kMostText = 1u << 24;
 constexpr uint64_t kMostCount = uint64_t(1) << 60;
 constexpr double kMostSeconds = 1e10;
 
-// FNV-1a over words of eight bytes, the last of which is filled up with zeros. It finds damage, not forgery.
-uint64_t hash_of(std::span<const std::byte> bytes) {
-    uint64_t hash = 0xcbf29ce484222325u ^ bytes.size();
-    for (size_t i = 0; i < bytes.size(); i += 8) {
-        uint64_t word = 0;
-        std::memcpy(&word, bytes.data() + i, std::min<size_t>(8, bytes.size() - i));
-        hash = (hash ^ word) * 0x100000001b3u;
-        hash ^= hash >> 29;
-    }
-    return hash;
-}
-
 template <typename T>
 void append(std::vector<std::byte>& bytes, const T* data, size_t count) {
     const auto* first = reinterpret_cast<const std::byte*>(data);
@@ -185,6 +173,17 @@ std::vector<std::byte> read_all(const std::string& file) {
 
 }  // namespace
 
+uint64_t checkpoint_hash(std::span<const std::byte> bytes) {
+    uint64_t hash = 0xcbf29ce484222325u ^ bytes.size();
+    for (size_t i = 0; i < bytes.size(); i += 8) {
+        uint64_t word = 0;
+        std::memcpy(&word, bytes.data() + i, std::min<size_t>(8, bytes.size() - i));
+        hash = (hash ^ word) * 0x100000001b3u;
+        hash ^= hash >> 29;
+    }
+    return hash;
+}
+
 void write_checkpoint(const std::string& file, const Checkpoint& checkpoint) {
     const std::string text = text_of(checkpoint).dump(-1, ' ', false, Json::error_handler_t::replace);
     const uint64_t length = text.size();
@@ -194,7 +193,7 @@ void write_checkpoint(const std::string& file, const Checkpoint& checkpoint) {
     append(bytes, text.data(), text.size());
     append(bytes, checkpoint.film.data(), checkpoint.film.size());
     for (const SessionState::Part& part : checkpoint.session.parts) append(bytes, part.bytes.data(), part.bytes.size());
-    const uint64_t hash = hash_of(bytes);
+    const uint64_t hash = checkpoint_hash(bytes);
     append(bytes, &hash, 1);
     write_file_atomically(file, bytes);
 }
@@ -216,7 +215,7 @@ std::optional<Checkpoint> read_checkpoint(const std::string& file) {
     std::memcpy(&hash, bytes.data() + bytes.size() - 8, 8);
     std::memcpy(&length, bytes.data() + kMagic.size(), 8);
     const std::span<const std::byte> content = all.first(bytes.size() - 8);
-    if (hash != hash_of(content)) throw fail("its content is damaged (the hash differs)");
+    if (hash != checkpoint_hash(content)) throw fail("its content is damaged (the hash differs)");
     if (length > kMostText || length > content.size() - head) throw fail("its text is longer than the file");
     const auto* text = reinterpret_cast<const char*>(bytes.data() + head);
     try {

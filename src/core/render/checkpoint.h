@@ -29,6 +29,10 @@ void write_checkpoint(const std::string& file, const Checkpoint& checkpoint);
 // Nothing if there is no such file. Throws InputError if it is no checkpoint, or a damaged one; MachineError if it cannot be read.
 std::optional<Checkpoint> read_checkpoint(const std::string& file);
 
+// Of a file, without its last eight bytes, which are this: FNV-1a over words of eight bytes, the last of which is filled up with
+// zeros. It finds damage, not forgery.
+uint64_t checkpoint_hash(std::span<const std::byte> bytes);
+
 // Throws InputError that names what differs.
 void check_same_rendering(const std::string& file, const RenderIdentity& saved, const RenderIdentity& now);
 

@@ -1,15 +1,13 @@
 #include "core/render/render.h"
 
+#include "core/base/memory.h"
 #include "core/base/plugin.h"
-#include "core/image/image_io.h"
 #include "core/render/checkpoint.h"
-#include "core/render/integrator_choice.h"
+#include "core/render/request.h"
 #include "core/render/statistics.h"
-#include "core/scene/limits.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -19,104 +17,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-void check(const RenderRequest& request) {
-    if (request.build.resolution) {
-        const auto [width, height] = *request.build.resolution;
-        if (std::min(width, height) < 1 || std::max(width, height) > kLargestSide)
-            throw InputError(
-                fmt::format("error: --resolution {}x{}: sides are 1 to {} pixels", width, height, kLargestSide));
-    }
-    const BudgetLimits& limits = request.limits;
-    if (limits.passes == 0u || request.samples_per_pixel == 0u)
-        throw InputError("error: a limit of passes or samples must be at least 1");
-    if (limits.seconds && !(*limits.seconds > 0.0)) throw InputError("error: a time limit must be above 0 seconds");
-    if (limits.target_error && !(*limits.target_error > 0.0)) throw InputError("error: --target-error must be above 0");
-    if (request.resume && request.checkpoint.empty())
-        throw InputError("error: --resume goes on from a checkpoint: name it with --checkpoint FILE");
-    if (!request.checkpoint.empty() && request.replay)
-        throw InputError("error: --replay renders one sample of one pixel, and has no checkpoint");
-    if (!(request.checkpoint_every_s > 0.0)) throw InputError("error: --every must be above 0 seconds");
-}
-
-// The request's settings of the integrator. `media` is removed: every integrator accepts it, and the scene's builder uses it.
-PluginChoice requested_integrator(const RenderRequest& request, BuildOptions& build) {
-    PluginChoice choice;
-    if (!request.integrator.empty()) choice = parse_plugin_choice(request.integrator);
-    choice.settings.insert(choice.settings.end(), request.integrator_settings.begin(),
-                           request.integrator_settings.end());
-    for (const auto& [key, value] : choice.settings) {
-        if (key != "media") continue;
-        if (value != "on" && value != "off")
-            throw InputError(fmt::format("error: integrator.media={}: expected on or off", shown(value)));
-        build.media = value == "on";
-    }
-    std::erase_if(choice.settings, [](const auto& setting) { return setting.first == "media"; });
-    return choice;
-}
-
-ChosenIntegrator choose(const RenderRequest& request, const PluginChoice& choice, BuiltScene& built,
-                        Diagnostics& diagnostics) {
-    ChosenIntegrator chosen = choose_integrator(built, choice, diagnostics);
-    if (!chosen.integrator) return chosen;
-    if (!request.photon_map.empty()) {
-        if (!chosen.integrator->uses_photon_map())
-            throw InputError(
-                fmt::format("error: --photon-map: integrator \"{}\" does not use a photon map", chosen.name));
-        chosen.photon_map = request.photon_map;
-    }
-    if (chosen.integrator->uses_photon_map()) create_photon_map(chosen.photon_map);  // reports errors early
-    return chosen;
-}
-
-// The limits of the rendering: those of the request, or the scene's number of samples.
-BudgetLimits choose_limits(const RenderRequest& request, const ChosenIntegrator& chosen, const SceneSettings& settings,
-                           const std::string& unseen_error) {
-    if (request.replay) return {1, {}, {}};
-    BudgetLimits limits = request.limits;
-    if (request.samples_per_pixel && !chosen.integrator->fixes_eye_samples())
-        limits.passes =
-            std::min<uint64_t>(limits.passes.value_or(*request.samples_per_pixel), *request.samples_per_pixel);
-    if (limits.passes || limits.seconds) return limits;
-    if (!limits.target_error) {
-        limits.passes = uint64_t(settings.samples_per_pixel);
-    } else if (!unseen_error.empty() && !limits.accept_unstable) {
-        throw InputError(fmt::format(
-            "error: --target-error alone would never stop: with integrator \"{}\" the estimated error stays "
-            "unstable, because {}; give another limit, too (--passes or --time), or take the estimate as it "
-            "is (--accept-unstable)",
-            chosen.name, unseen_error));
-    }
-    return limits;
-}
-
-void apply_replay(const std::array<int, 3>& replay, BuiltScene& built) {
-    const auto [x, y, pass] = replay;
-    if (x < 0 || y < 0 || pass < 0 || x >= int(built.scene.width()) || y >= int(built.scene.height()))
-        throw InputError(fmt::format("error: --replay {},{},{}: the picture has {}x{} pixels", x, y, pass,
-                                     built.scene.width(), built.scene.height()));
-    built.settings.crop = {x, y, x + 1, y + 1};
-}
-
-uint32_t sampler_number(const std::string& name) {
-    if (name == "independent") return kernel::SAMPLER_INDEPENDENT;
-    if (name == "sobol") return kernel::SAMPLER_SOBOL;
-    throw InputError(
-        fmt::format("error: unknown sampler \"{}\"; there are \"independent\" and \"sobol\"", shown(name)));
-}
-
-// R, G, B of the rendered pixels.
-std::vector<float> read_reference(const std::string& file, const BuiltScene& built) {
-    const std::array<int, 4>& crop = built.settings.crop;
-    Image image = read_image(file, {true, true});
-    const int width = crop[2] - crop[0], height = crop[3] - crop[1];
-    if (image.width == int(built.scene.width()) && image.height == int(built.scene.height()))
-        image = image.crop({crop[0], crop[1], crop[2], crop[3]});
-    if (image.width != width || image.height != height)
-        throw InputError(fmt::format("error: {}: the reference has {} pixels, the picture {}x{}", file,
-                                     image.size_text(), width, height));
-    return std::move(image.pixels);
-}
 
 // Writes the checkpoint of a rendering, if it has one. What cannot be written is told, and the rendering goes on.
 class CheckpointKeeper {
@@ -129,6 +29,8 @@ class CheckpointKeeper {
     void keep(const RenderSession& session, const Film& film, const std::vector<ConvergencePoint>& convergence,
               double total_s) {
         if (request_.checkpoint.empty() || !session.last_look()) return;
+        const std::unique_lock lock(mutex_, std::try_to_lock);
+        if (!lock) return;  // the other thread writes it
         const SessionState& state = *session.last_look();
         if (state.passes == written_passes_) return;
         last_ = Clock::now();
@@ -144,6 +46,7 @@ class CheckpointKeeper {
     const RenderRequest& request_;
     RenderObserver& observer_;
     const RenderIdentity identity_;
+    std::mutex mutex_;
     uint64_t written_passes_ = 0;
     Clock::time_point last_ = Clock::now();
 };
@@ -164,7 +67,8 @@ class EndOfInterruption {
 
 struct Rendering::State {
     State(RenderRequest wanted, RenderObserver* watching);
-    RenderOutcome run(uint32_t seed);
+    RenderIdentity identity(uint32_t seed) const;
+    RunRecord record_of(const RenderSession& session, const FilmSummary& film) const;
 
     const Clock::time_point start = Clock::now();
     RenderRequest request;  // without its scene, once that has been read
@@ -183,11 +87,6 @@ struct Rendering::State {
 
  private:
     void load();
-    RenderIdentity identity(uint32_t seed) const;
-    RunRecord record_of(const RenderSession& session) const;
-    // The film as it was last downloaded.
-    RenderOutcome outcome_of(const RenderSession& session, const Film& film,
-                             const std::vector<ConvergencePoint>& convergence, double total_s) const;
 };
 
 Rendering::State::State(RenderRequest wanted, RenderObserver* watching)
@@ -221,6 +120,7 @@ Rendering::State::State(RenderRequest wanted, RenderObserver* watching)
                 fmt::format("there is no checkpoint '{}' yet: the rendering begins anew", request.checkpoint));
     }
     device_scene = device->upload(loaded.scene);
+    check_process_memory(request.max_process_memory);
     setup_s = seconds_since(start);
 }
 
@@ -230,6 +130,7 @@ void Rendering::State::load() {
     auto sources = std::make_shared<Sources>();
     Diagnostics diagnostics(*sources);
     diagnostics.set_skip_unsupported(request.skip_unsupported);
+    diagnostics.set_max_memory(request.max_process_memory);
     loaded = read_scene(std::move(request.scene), build, std::move(sources), diagnostics);
     const Clock::time_point choice_start = Clock::now();
     chosen = choose(request, choice, loaded, diagnostics);
@@ -239,80 +140,146 @@ void Rendering::State::load() {
     diagnostics.throw_if_errors();
     loaded.scene.unsupported = diagnostics.unsupported_list();
     scene_s = loaded.build_s + seconds_since(choice_start);
+    check_process_memory(request.max_process_memory);
 }
 
-RenderOutcome Rendering::State::run(uint32_t seed) {
-    const Clock::time_point run_start = Clock::now();
-    const WatchScope scope(observer);
-    const EndOfInterruption end(observer);
-    Film film(*device, loaded.scene, loaded.settings.crop);
-    RenderSession session(*device, loaded.scene, device_scene, film, limits);
-    session.photon_map = chosen.photon_map;
-    session.error_rate = chosen.integrator->error_rate();
-    session.eye_samples = eye_samples;
-    session.unseen_error = unseen_error;
-    session.seed = seed;
-    session.sampler = sampler;
-    session.max_slice = request.max_slice;
-    session.start_at(request.replay ? uint64_t((*request.replay)[2]) : request.first_pass);
-    std::optional<PathLogger> path_log;
-    if (request.replay) session.path_log = &path_log.emplace(*device);
-    session.on_note = [&](const std::string& text) { observer.note(text); };
-    std::vector<ConvergencePoint> convergence;
-    double earlier_s = setup_s;  // before this run
-    if (resumed) {
-        check_same_rendering(request.checkpoint, resumed->identity, identity(seed));
-        film.restore(resumed->film);
-        convergence = std::move(resumed->convergence);
-        earlier_s += resumed->total_s;
-        session.go_on_from(std::move(resumed->session));
-        resumed.reset();  // a second run starts afresh
+// The film and the session of one run, and what is kept beside them.
+struct Rendering::Run {
+    Run(State& rendering, uint32_t seed);
+    ~Run();
+    RenderOutcome outcome();
+
+ private:
+    void look();
+    void progress(const RenderProgress& progress);
+    std::optional<RenderOutcome> so_far(std::chrono::milliseconds patience, bool ends);
+    void keep_before_failing();
+    RenderOutcome outcome_of(const RunRecord& record, bool with_layers) const;
+    double total_s() const { return earlier_s_ + seconds_since(start_); }
+
+    const Clock::time_point start_ = Clock::now();
+    State& state_;
+    RenderObserver& observer_;
+    Film film_;
+    RenderSession session_;
+    CheckpointKeeper keeper_;
+    std::optional<PathLogger> path_log_;
+    double earlier_s_;  // before this run
+    std::vector<ConvergencePoint> convergence_;
+    RunRecord looked_;  // of the last look
+    Clock::time_point last_image_ = start_;
+};
+
+Rendering::Run::Run(State& state, uint32_t seed)
+    : state_(state),
+      observer_(state.observer),
+      film_(*state.device, state.loaded.scene, state.loaded.settings.crop),
+      session_(*state.device, state.loaded.scene, state.device_scene, film_, state.limits),
+      keeper_(state.request, state.observer, state.identity(seed)),
+      earlier_s_(state.setup_s) {
+    const RenderRequest& request = state.request;
+    session_.photon_map = state.chosen.photon_map;
+    session_.error_rate = state.chosen.integrator->error_rate();
+    session_.eye_samples = state.eye_samples;
+    session_.unseen_error = state.unseen_error;
+    session_.seed = seed;
+    session_.sampler = state.sampler;
+    session_.max_slice = request.max_slice;
+    session_.start_at(request.replay ? uint64_t((*request.replay)[2]) : request.first_pass);
+    if (request.replay) session_.path_log = &path_log_.emplace(*state.device);
+    session_.on_note = [this](const std::string& text) { observer_.note(text); };
+    if (state.resumed) {
+        check_same_rendering(request.checkpoint, state.resumed->identity, state.identity(seed));
+        film_.restore(state.resumed->film);
+        convergence_ = std::move(state.resumed->convergence);
+        earlier_s_ += state.resumed->total_s;
+        session_.go_on_from(std::move(state.resumed->session));
+        state.resumed.reset();  // a second run starts afresh
     }
-    session.keeps_looks = !request.checkpoint.empty();
-    const auto total_s = [&] { return earlier_s + seconds_since(run_start); };
-    CheckpointKeeper keeper(request, observer, identity(seed));
-    Clock::time_point last_image = run_start;
-    session.on_progress = [&](const RenderProgress& progress, const Film& current) {
-        if (convergence.empty() || convergence.back().passes < progress.passes) {
-            ConvergencePoint point{progress.wall_s,
-                                   progress.passes,
-                                   progress.estimated_error,
-                                   progress.forecast,
-                                   !progress.unstable.empty(),
-                                   {}};
-            if (reference) point.against_reference = measure(current.rgb(), *reference);
-            convergence.push_back(point);
-        }
-        observer.progress(progress, current);
-        if (keeper.is_due()) keeper.keep(session, current, convergence, total_s());
-        const double every = observer.wants_image_every();
-        if (every > 0.0 && !progress.finished && seconds_since(last_image) >= every) {
-            observer.image_so_far(outcome_of(session, current, convergence, total_s()));
-            last_image = Clock::now();
-        }
-    };
-    try {
-        chosen.integrator->render(session);
-    } catch (const Cancelled&) {
-        session.pass_was_cancelled();
+    session_.keeps_looks = !request.checkpoint.empty();
+    session_.on_look = [this] { look(); };
+    session_.on_progress = [this](const RenderProgress& now, const Film&) { progress(now); };
+    observer_.let_ask([this](std::chrono::milliseconds patience, bool ends) { return so_far(patience, ends); });
+}
+
+Rendering::Run::~Run() { observer_.let_ask({}); }
+
+void Rendering::Run::look() {
+    const RenderProgress& progress = session_.progress();
+    if (convergence_.empty() || convergence_.back().passes < progress.passes) {
+        ConvergencePoint point{progress.wall_s,
+                               progress.passes,
+                               progress.estimated_error,
+                               progress.forecast,
+                               !progress.unstable.empty(),
+                               {}};
+        if (state_.reference) point.against_reference = measure(film_.rgb(), *state_.reference);
+        convergence_.push_back(point);
     }
-    keeper.keep(session, film, convergence, total_s());  // before the film gets a part of a pass that was cut short
-    film.download();
-    RenderOutcome outcome = outcome_of(session, film, convergence, total_s());
-    outcome.pixels = film.take_pixels();
-    if (path_log) outcome.paths = path_log->log();
+    looked_ = state_.record_of(session_, session_.looked());
+    looked_.convergence = convergence_;
+    looked_.total_s = total_s();
+}
+
+void Rendering::Run::progress(const RenderProgress& progress) {
+    if (!progress.finished) check_process_memory(state_.request.max_process_memory);
+    observer_.progress(progress, film_);
+    if (keeper_.is_due()) keeper_.keep(session_, film_, convergence_, total_s());
+    const double every = observer_.wants_image_every();
+    if (every <= 0.0 || progress.finished || seconds_since(last_image_) < every) return;
+    observer_.image_so_far(outcome_of(looked_, true));
+    last_image_ = Clock::now();
+}
+
+std::optional<RenderOutcome> Rendering::Run::so_far(std::chrono::milliseconds patience, bool ends) {
+    const std::unique_lock lock(session_.look_mutex, patience);
+    if (!lock || looked_.progress.passes == 0) return std::nullopt;
+    RenderOutcome outcome = outcome_of(looked_, false);
+    outcome.record.ended = RenderEnd::kInterrupted;
+    if (ends) keeper_.keep(session_, film_, looked_.convergence, looked_.total_s);
     return outcome;
 }
 
-RenderOutcome Rendering::State::outcome_of(const RenderSession& session, const Film& film,
-                                           const std::vector<ConvergencePoint>& convergence, double total_s) const {
+// Whatever fails here is less than what failed before.
+void Rendering::Run::keep_before_failing() {
+    try {
+        keeper_.keep(session_, film_, convergence_, total_s());
+        if (const auto outcome = so_far({}, false)) observer_.fails_after(*outcome);
+    } catch (const std::exception& error) {
+        observer_.failure(fmt::format("warning: what was rendered before is lost: {}", error.what()));
+    }
+}
+
+RenderOutcome Rendering::Run::outcome() {
+    try {
+        state_.chosen.integrator->render(session_);
+    } catch (const Cancelled&) {
+        session_.pass_was_cancelled();
+    } catch (...) {
+        observer_.passes_end();
+        keep_before_failing();
+        throw;
+    }
+    observer_.passes_end();
+    keeper_.keep(session_, film_, convergence_, total_s());  // before the film gets a part of a pass that was cut short
+    film_.download();
+    RunRecord record = state_.record_of(session_, film_.summary());
+    record.convergence = convergence_;
+    record.total_s = total_s();
+    RenderOutcome outcome = outcome_of(record, true);
+    outcome.pixels = film_.take_pixels();
+    if (path_log_) outcome.paths = path_log_->log();
+    return outcome;
+}
+
+// The film as it was last downloaded.
+RenderOutcome Rendering::Run::outcome_of(const RunRecord& record, bool with_layers) const {
     RenderOutcome outcome;
-    outcome.record = record_of(session);
-    outcome.record.convergence = convergence;
-    outcome.record.total_s = total_s;
-    outcome.image = film.image();
-    for (const ImageLayer& layer : session.layers)
-        outcome.image.add_channels({layer.name + ".R", layer.name + ".G", layer.name + ".B"}, layer.rgb);
+    outcome.record = record;
+    outcome.image = film_.image();
+    if (with_layers)
+        for (const ImageLayer& layer : session_.layers)
+            outcome.image.add_channels({layer.name + ".R", layer.name + ".G", layer.name + ".B"}, layer.rgb);
     outcome.image.metadata = image_metadata(outcome.record);
     return outcome;
 }
@@ -338,7 +305,7 @@ RenderIdentity Rendering::State::identity(uint32_t seed) const {
     return identity;
 }
 
-RunRecord Rendering::State::record_of(const RenderSession& session) const {
+RunRecord Rendering::State::record_of(const RenderSession& session, const FilmSummary& film) const {
     const Scene& scene = loaded.scene;
     RunRecord run;
     run.scene = scene.name;
@@ -357,7 +324,7 @@ RunRecord Rendering::State::record_of(const RenderSession& session) const {
     run.sampler = loaded.settings.sampler;
     run.resolution = {int(scene.width()), int(scene.height())};
     run.crop = loaded.settings.crop;
-    run.film = session.film.summary();
+    run.film = film;
     run.film.rays += session.photons.rays;
     if (chosen.integrator->uses_photon_map()) {
         run.photon_map = parse_plugin_choice(chosen.photon_map).name;
@@ -384,11 +351,25 @@ Rendering::~Rendering() = default;
 
 RenderOutcome Rendering::run() { return run(state_->loaded.settings.seed); }
 
-RenderOutcome Rendering::run(uint32_t seed) { return state_->run(seed); }
+RenderOutcome Rendering::run(uint32_t seed) {
+    const WatchScope scope(state_->observer);
+    const EndOfInterruption end(state_->observer);
+    return Run(*state_, seed).outcome();
+}
 
 const Scene& Rendering::scene() const { return state_->loaded.scene; }
 
 const SceneSettings& Rendering::settings() const { return state_->loaded.settings; }
+
+std::optional<RenderOutcome> RenderObserver::outcome_so_far(std::chrono::milliseconds patience, bool ends) {
+    const std::lock_guard lock(so_far_mutex_);
+    return so_far_ ? so_far_(patience, ends) : std::nullopt;
+}
+
+void RenderObserver::let_ask(SoFar so_far) {
+    const std::lock_guard lock(so_far_mutex_);
+    so_far_ = std::move(so_far);
+}
 
 RenderOutcome render(const RenderRequest& request) { return Rendering(request).run(); }
 

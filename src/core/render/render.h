@@ -18,8 +18,11 @@
 #include "core/scene/load.h"
 
 #include <array>
+#include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -55,6 +58,9 @@ struct RenderRequest {
     bool resume = false;               // go on from the checkpoint, if there is one
     std::optional<std::array<int, 3>> replay;  // x, y, pass: one sample of one pixel, alone
     uint64_t first_pass = 0;                   // number of the first pass
+    // Most bytes of memory for the process: MachineError if it has more once the scene is loaded, or after a pass, and
+    // RenderObserver::fails_after gets the image so far. device_options.max_memory limits buffers before they are made. 0: no limit.
+    uint64_t max_process_memory = 0;
     uint32_t max_slice = 0;  // maximum of passes in a slice; 0: as many as take a fraction of a second
     uint64_t effects = 0;    // effects that kernels support beyond the scene's, so that one build serves many scenes
 };
@@ -92,6 +98,22 @@ class RenderObserver : public Watch {
     // What there is after so many seconds, and so on, without `pixels`: for a picture to look at meanwhile. 0: none.
     virtual double wants_image_every() const { return 0.0; }
     virtual void image_so_far([[maybe_unused]] const RenderOutcome& outcome) {}
+    // No pass is rendered any more; what there is becomes the outcome.
+    virtual void passes_end() {}
+    // The rendering fails: what there was at the last progress(), without `pixels`. render() throws afterwards.
+    virtual void fails_after([[maybe_unused]] const RenderOutcome& outcome) {}
+
+    // What there was at the last progress(), without `pixels` and layers; nothing before that, and after passes_end(). For other
+    // threads: the rendering thread may be in a driver's compiler for minutes, or wait for a device that hangs. `patience` is for
+    // the moments in which the film is read. `ends`: the program is about to end, so the checkpoint is written, too, if there is one.
+    std::optional<RenderOutcome> outcome_so_far(std::chrono::milliseconds patience, bool ends = false);
+
+ private:
+    friend class Rendering;
+    using SoFar = std::function<std::optional<RenderOutcome>(std::chrono::milliseconds, bool)>;
+    void let_ask(SoFar so_far);
+    std::mutex so_far_mutex_;
+    SoFar so_far_;
 };
 
 RenderOutcome render(const RenderRequest& request);
@@ -115,6 +137,7 @@ class Rendering {
 
  private:
     struct State;
+    struct Run;
     std::unique_ptr<State> state_;
 };
 

@@ -127,9 +127,11 @@ void RenderSession::apply_limits() {
 }
 
 void RenderSession::look() {
+    std::unique_lock lock(look_mutex);
     last_look_s_ = progress_.wall_s;
     film.download();
-    const FilmSummary summary = film.summary();
+    looked_ = film.summary();
+    const FilmSummary& summary = looked_;
     progress_.estimated_error = summary.estimated_relmse;
     if (history_.empty() || history_.back().passes < progress_.passes)
         history_.push_back({progress_.passes, progress_.wall_s, summary.estimated_relmse});
@@ -141,6 +143,8 @@ void RenderSession::look() {
     progress_.target = compare_with_target(summary);
     if (progress_.target == TargetState::kReached) progress_.finished = true;
     if (keeps_looks) last_look_ = state();
+    if (on_look) on_look();
+    lock.unlock();
     if (on_progress) on_progress(progress_, film);
 }
 

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -108,6 +109,9 @@ class RenderSession {
     kernel::FilmWindow window(uint32_t first, uint32_t samples) const;
     const RenderProgress& progress() const { return progress_; }
     RenderEnd ended() const;
+    // The film at the last look.
+    const FilmSummary& looked() const { return looked_; }
+
     // To be called if a pass threw Cancelled: the film's contents count, the pass does not.
     void pass_was_cancelled() { interrupted_ = true; }
 
@@ -145,8 +149,10 @@ class RenderSession {
     const std::map<std::string, double>& phases() const { return phases_; }
 
     // Called with the film downloaded after a slice that ends at a power of two, after the last one, and at least every two
-    // seconds.
+    // seconds. During on_look, look_mutex is held: other threads that hold it find what the last look found.
+    std::function<void()> on_look;
     std::function<void(const RenderProgress&, const Film&)> on_progress;
+    std::timed_mutex look_mutex;
 
  private:
     using Clock = std::chrono::steady_clock;
@@ -172,6 +178,7 @@ class RenderSession {
     double seconds_per_pass_ = 0.0;
     double last_look_s_ = 0.0;
     bool interrupted_ = false;
+    FilmSummary looked_;
     std::vector<KeptPart> kept_;
     std::optional<SessionState> last_look_;
     std::optional<SessionState> went_on_from_;  // until the first pass

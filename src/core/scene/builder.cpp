@@ -14,9 +14,7 @@ std::string Asker::operator()() const {
                        entity->type);
 }
 
-std::string BuildContext::resolve(const std::string& filename) const {
-    return (std::filesystem::path(description.directory) / filename).string();
-}
+std::string BuildContext::resolve(const std::string& filename) const { return description.folder.path(filename); }
 
 kernel::TransformRecord transform_record(const glm::mat4& to) {
     // In double: the inverse's rounding would otherwise move quadrics against their neighbours.
@@ -57,8 +55,7 @@ void BuildContext::refuse_motion(const AnimatedTransform& transform, Location wh
 namespace {
 
 Spectrum value_of(BuildContext& context, const Parameter& parameter, SpectrumUse use, Spectrum default_value) {
-    const std::optional<glm::vec3> rgb =
-        spectrum_rgb(parameter, use, context.description.directory, context.diagnostics);
+    const std::optional<glm::vec3> rgb = spectrum_rgb(parameter, use, context.description.folder, context.diagnostics);
     return rgb ? spectrum_of_rgb(*rgb) : default_value;
 }
 

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "core/base/parameter_list.h"
+#include "core/scene/scene_folder.h"
 
 #include <glm/mat4x4.hpp>
 
@@ -73,7 +74,7 @@ struct InstanceDescription {
 
 struct SceneDescription {
     std::shared_ptr<Sources> sources;
-    std::string directory;  // folder of the scene file: relative file names start here
+    SceneFolder folder;
     CameraDescription camera;
     Entity sampler, film, pixel_filter, integrator, accelerator;  // not given(): pbrt's defaults
     ParameterList options;  // of Option directives; names in lower case without "_" and "-", as pbrt compares them
@@ -94,9 +95,11 @@ struct SceneDescription {
 // Throws InputError only if the file cannot be read at all.
 // `sources` owns the texts, so it must live as long as locations are shown. It must be the one that `diagnostics` was made
 // with.
-SceneDescription parse_scene_file(const std::string& path, std::shared_ptr<Sources> sources, Diagnostics& diagnostics);
-// The same for a text in memory (tests, fuzzing, standard input); `directory` is where its Includes are looked for.
-SceneDescription parse_scene_text(std::string name, std::string text, const std::string& directory,
+// It may read files in `allowed` folders, too.
+SceneDescription parse_scene_file(const std::string& path, std::shared_ptr<Sources> sources, Diagnostics& diagnostics,
+                                  std::vector<std::string> allowed = {});
+// The same for a text in memory (tests, fuzzing, standard input).
+SceneDescription parse_scene_text(std::string name, std::string text, SceneFolder folder,
                                   std::shared_ptr<Sources> sources, Diagnostics& diagnostics);
 
 }  // namespace lampyris

@@ -1,6 +1,7 @@
 #include "core/scene/file_text.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -24,7 +25,9 @@ bool inflate_gzip(std::string_view bytes, std::string& result, std::string& why)
     }
     std::unique_ptr<z_stream, int (*)(z_stream*)> guard(&stream, inflateEnd);
     result.clear();
-    // Grows with the actual data, so that the size which a small file claims cannot make it allocate much memory.
+    // Grows with the actual data, so that the size which a small file claims cannot make it allocate much memory; and not beyond
+    // what scenes and meshes take. The format itself reaches 1032 to 1.
+    const size_t most = std::max(kLargestInflatedSize, kLargestInflation * bytes.size());
     size_t produced = 0;
     size_t consumed = 0;
     while (true) {
@@ -40,6 +43,12 @@ bool inflate_gzip(std::string_view bytes, std::string& result, std::string& why)
         const bool progress = stream.avail_in < in || stream.avail_out < out;
         consumed += in - stream.avail_in;
         produced += out - stream.avail_out;
+        if (produced > most) {
+            why = fmt::format(
+                "the gzip'd data becomes more than {} times as large, and more than {} MiB; unpack it with gunzip",
+                kLargestInflation, kLargestInflatedSize >> 20);
+            return false;
+        }
         if (status == Z_STREAM_END) {
             // Another member may follow; anything else after the end is padding, as gzip itself sees it.
             if (!is_gzip(bytes.substr(consumed))) break;

@@ -1,6 +1,7 @@
 // The bytes of an input file: memory-mapped, or read into memory where the file is small, and decompressed where it is gzip'd.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -28,9 +29,12 @@ class FileText {
     std::string_view text_;
 };
 
+// A gzip'd file may inflate to the larger one of this size, and this multiple of its own.
+inline constexpr size_t kLargestInflatedSize = size_t(256) << 20;
+inline constexpr size_t kLargestInflation = 64;
 bool is_gzip(std::string_view bytes);
 // The decompressed contents of a gzip stream, which may have several members. False, with the reason in `why`, if it is
-// damaged.
+// damaged, or becomes too large.
 bool inflate_gzip(std::string_view bytes, std::string& result, std::string& why);
 
 }  // namespace lampyris

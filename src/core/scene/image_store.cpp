@@ -177,8 +177,12 @@ uint32_t ImageStore::load(const std::string& path, TexelEncoding encoding, Image
     const auto key = std::pair(std::move(canonical), encoding);
     auto found = loaded_.find(key);
     if (found == loaded_.end())
-        found =
-            loaded_.emplace(key, pack(read_image(path, {.linear = false, .rgb = false}), encoding, path, where)).first;
+        found = loaded_
+                    .emplace(
+                        key,
+                        pack(read_image(path, {.linear = false, .rgb = false, .max_memory = diagnostics_.max_memory()}),
+                             encoding, path, where))
+                    .first;
     return record(found->second, lookup);
 }
 

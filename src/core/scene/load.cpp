@@ -13,9 +13,11 @@ LoadedScene read_scene(SceneSource source, const BuildOptions& options, std::sha
     LoadedScene loaded;
     loaded.sources = std::move(sources);
     const auto start = Clock::now();
-    SceneDescription description = source.text ? parse_scene_text(source.name, *std::move(source.text),
-                                                                  source.directory, loaded.sources, diagnostics)
-                                               : parse_scene_file(source.name, loaded.sources, diagnostics);
+    SceneDescription description =
+        source.text
+            ? parse_scene_text(source.name, *std::move(source.text),
+                               SceneFolder(source.directory, source.allowed_folders), loaded.sources, diagnostics)
+            : parse_scene_file(source.name, loaded.sources, diagnostics, source.allowed_folders);
     loaded.parse_s = seconds(start);
     const auto parsed = Clock::now();
     // Building continues after parser errors, so that all errors of a scene are reported at once.

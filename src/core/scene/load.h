@@ -16,10 +16,12 @@ struct SceneSource {
     std::string name;                 // the file's path, or the name of the text in messages
     std::optional<std::string> text;  // a scene in memory
     std::string directory = ".";      // for a text: the folder of the files that it names
+    // A scene reads files in its folder and below it; and in these.
+    std::vector<std::string> allowed_folders;
 
-    static SceneSource of_file(std::string path) { return {std::move(path), {}, {}}; }
+    static SceneSource of_file(std::string path) { return {std::move(path), {}, {}, {}}; }
     static SceneSource of_text(std::string text, std::string name = "scene", std::string directory = ".") {
-        return {std::move(name), std::move(text), std::move(directory)};
+        return {std::move(name), std::move(text), std::move(directory), {}};
     }
 };
 

@@ -1,5 +1,7 @@
 #include "core/scene/parser.h"
 
+#include "core/base/memory.h"
+
 #include "core/scene/number.h"
 
 #include <algorithm>
@@ -67,10 +69,10 @@ const Parser::Directive* find_directive(std::string_view word) {
 
 bool is_directive(std::string_view word) { return find_directive(word) || word == "WorldEnd"; }
 
-Parser::Parser(std::string directory, std::shared_ptr<Sources> sources, Diagnostics& diagnostics)
+Parser::Parser(SceneFolder folder, std::shared_ptr<Sources> sources, Diagnostics& diagnostics)
     : diagnostics_(&diagnostics), old_format_(diagnostics), parameter_parser_(diagnostics, old_format_) {
     scene_.sources = std::move(sources);
-    scene_.directory = std::move(directory);
+    scene_.folder = std::move(folder);
 }
 
 void Parser::parse_text(std::string_view text, uint32_t file, const FileText* mapping) {
@@ -87,6 +89,8 @@ void Parser::parse_text(std::string_view text, uint32_t file, const FileText* ma
         else
             unexpected(token);
         tokenizer.release_consumed();
+        constexpr uint64_t kOften = 16384;  // statements: some megabytes
+        if (++statements_ % kOften == 0) check_process_memory(diagnostics_->max_memory());
     }
     tokenizer_ = outer;
 }
@@ -179,18 +183,13 @@ bool Parser::open_file(const Token& directive, const std::string& name, Location
     } else if (open_files_.size() >= kMaxDepth || ++files_read_ > kMaxFiles) {
         why = "files are included too deeply or too often";
     } else {
-        path = resolve_path(name);
-        if (parse_file(path, why)) return true;
+        path = scene_.folder.path(name);
+        why = scene_.folder.why_refused(path);
+        if (why.empty() && parse_file(path, why)) return true;
     }
     diagnostics_->error(location, std::string(directive.text) + " cannot read \"" + shown(name) + "\": " + why,
                         "relative names start at the folder of the scene file");
     return false;
-}
-
-std::string Parser::resolve_path(const std::string& name) const {
-    const std::filesystem::path path(name);
-    if (path.is_absolute() || scene_.directory.empty()) return name;
-    return (std::filesystem::path(scene_.directory) / path).string();
 }
 
 bool Parser::parse_file(const std::string& path, std::string& why) {
@@ -258,20 +257,25 @@ void Parser::resolve_names() {
 
 namespace {
 
-std::string folder_of(const std::string& path) { return std::filesystem::path(path).parent_path().string(); }
+// Of a scene on standard input, the working folder.
+std::string folder_of(const std::string& path) {
+    if (path.starts_with("/dev/") || path.starts_with("/proc/")) return ".";
+    return std::filesystem::path(path).parent_path().string();
+}
 
 }  // namespace
 
-SceneDescription parse_scene_file(const std::string& path, std::shared_ptr<Sources> sources, Diagnostics& diagnostics) {
-    Parser parser(folder_of(path), std::move(sources), diagnostics);
+SceneDescription parse_scene_file(const std::string& path, std::shared_ptr<Sources> sources, Diagnostics& diagnostics,
+                                  std::vector<std::string> allowed) {
+    Parser parser(SceneFolder(folder_of(path), std::move(allowed)), std::move(sources), diagnostics);
     std::string why;
     if (!parser.parse_file(path, why)) throw InputError(path + ": error: the scene cannot be read: " + why);
     return parser.finish();
 }
 
-SceneDescription parse_scene_text(std::string name, std::string text, const std::string& directory,
+SceneDescription parse_scene_text(std::string name, std::string text, SceneFolder folder,
                                   std::shared_ptr<Sources> sources, Diagnostics& diagnostics) {
-    Parser parser(directory, sources, diagnostics);
+    Parser parser(std::move(folder), sources, diagnostics);
     const uint32_t file = sources->add_owned(std::move(name), std::move(text));
     parser.parse_text(sources->text(file), file, nullptr);
     return parser.finish();

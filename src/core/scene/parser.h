@@ -17,7 +17,7 @@ namespace lampyris {
 
 class Parser {
  public:
-    Parser(std::string directory, std::shared_ptr<Sources> sources, Diagnostics& diagnostics);
+    Parser(SceneFolder folder, std::shared_ptr<Sources> sources, Diagnostics& diagnostics);
     void parse_text(std::string_view text, uint32_t file, const FileText* mapping);
     bool parse_file(const std::string& path, std::string& why);
     SceneDescription finish();
@@ -89,7 +89,6 @@ class Parser {
     void read_parameters(ParameterList& list, const Defaults& defaults);
     void set_once(const Token& directive, Entity& entity);
     void apply(const glm::dmat4& matrix, bool replace = false);
-    std::string resolve_path(const std::string& name) const;
     bool open_file(const Token& directive, const std::string& name, Location location, std::string& path);
 
     // The stack of open blocks.
@@ -134,6 +133,7 @@ class Parser {
     std::vector<std::pair<std::string, std::optional<CoordinateSystem>>> undo_;  // what Imports have changed
     std::unordered_map<std::string, File> files_;  // by canonical path: each is mapped once
     std::vector<std::string> open_files_;          // canonical paths, outermost first
+    uint64_t statements_ = 0;
     size_t files_read_ = 0;
     bool warned_transform_block_ = false;
 };

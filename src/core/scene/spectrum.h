@@ -59,10 +59,10 @@ ConductorRgb conductor_rgb(const SampledSpectrum& eta, const SampledSpectrum& k)
 
 // A parameter of type blackbody, spectrum or float as a sampled spectrum; empty for rgb. Errors (unknown name, unreadable file,
 // unordered wavelengths) are reported.
-std::optional<SampledSpectrum> sampled_spectrum(const Parameter& parameter, const std::string& directory,
+std::optional<SampledSpectrum> sampled_spectrum(const Parameter& parameter, const SceneFolder& folder,
                                                 Diagnostics& diagnostics);
 // Any spectrum parameter as linear Rec.709; empty, with the error reported, if it is wrong.
-std::optional<glm::vec3> spectrum_rgb(const Parameter& parameter, SpectrumUse use, const std::string& directory,
+std::optional<glm::vec3> spectrum_rgb(const Parameter& parameter, SpectrumUse use, const SceneFolder& folder,
                                       Diagnostics& diagnostics);
 
 }  // namespace lampyris

@@ -89,7 +89,7 @@ std::optional<glm::vec3> rgb_value(const Parameter& parameter, SpectrumUse use, 
 
 }  // namespace
 
-std::optional<SampledSpectrum> sampled_spectrum(const Parameter& parameter, const std::string& directory,
+std::optional<SampledSpectrum> sampled_spectrum(const Parameter& parameter, const SceneFolder& folder,
                                                 Diagnostics& diagnostics) {
     const Location where = place_of(parameter);
     if (const auto* numbers = std::get_if<std::vector<float>>(&parameter.values)) {
@@ -113,16 +113,19 @@ std::optional<SampledSpectrum> sampled_spectrum(const Parameter& parameter, cons
         return {};
     }
     if (const SampledSpectrum* named = named_spectrum(names->front())) return *named;
-    const std::filesystem::path path = std::filesystem::path(directory) / names->front();
+    const std::string path = folder.path(names->front());
+    const std::string refused = folder.why_refused(path);
     std::error_code code;
-    if (std::filesystem::is_regular_file(path, code)) return from_file(path.string(), where, diagnostics);
+    if (refused.empty() && std::filesystem::is_regular_file(path, code)) return from_file(path, where, diagnostics);
     const std::string near = did_you_mean(names->front(), named_spectra());
-    diagnostics.error(where, fmt::format("\"{}\" is neither a named spectrum nor a file", names->front()),
+    diagnostics.error(where,
+                      fmt::format("\"{}\" is neither a named spectrum nor a file{}{}", shown(names->front()),
+                                  refused.empty() ? "" : " that may be read: ", refused),
                       fmt::format("{}{}named spectra: {}", near, near.empty() ? "" : "; ", list_of(named_spectra())));
     return {};
 }
 
-std::optional<glm::vec3> spectrum_rgb(const Parameter& parameter, SpectrumUse use, const std::string& directory,
+std::optional<glm::vec3> spectrum_rgb(const Parameter& parameter, SpectrumUse use, const SceneFolder& folder,
                                       Diagnostics& diagnostics) {
     if (parameter.type == ParameterType::kRgb) return rgb_value(parameter, use, diagnostics);
     if (parameter.type != ParameterType::kSpectrum && parameter.type != ParameterType::kBlackbody) {
@@ -131,7 +134,7 @@ std::optional<glm::vec3> spectrum_rgb(const Parameter& parameter, SpectrumUse us
                           "rgb, blackbody or spectrum");
         return {};
     }
-    std::optional<SampledSpectrum> spectrum = sampled_spectrum(parameter, directory, diagnostics);
+    std::optional<SampledSpectrum> spectrum = sampled_spectrum(parameter, folder, diagnostics);
     if (!spectrum) return {};
     const auto negative =
         std::count_if(spectrum->values.begin(), spectrum->values.end(), [](float v) { return v < 0.0f; });

@@ -118,7 +118,7 @@ TextureProgram TextureBuilder::operand(ParameterReader& reader, std::string_view
                           parameter->type == ParameterType::kBlackbody;
     if (is_spectrum && is_color)
         return constant_program(
-            spectrum_rgb(*parameter, SpectrumUse::kUnbounded, context_.description.directory, context_.diagnostics)
+            spectrum_rgb(*parameter, SpectrumUse::kUnbounded, context_.description.folder, context_.diagnostics)
                 .value_or(glm::vec3(absent)));
     if (is_spectrum) {
         context_.diagnostics.error(
@@ -133,7 +133,11 @@ TextureProgram TextureBuilder::operand(ParameterReader& reader, std::string_view
 uint32_t TextureBuilder::request_image(ImageRequest request) {
     std::error_code ignored;
     const std::filesystem::path path(request.path);
-    if (!std::filesystem::is_regular_file(path, ignored)) {
+    if (const std::string why = context_.description.folder.why_refused(request.path); !why.empty()) {
+        context_.diagnostics.error(request.location,
+                                   fmt::format("the image {} is not read: {}", shown(request.path), why));
+        failed_.insert(request.path);
+    } else if (!std::filesystem::is_regular_file(path, ignored)) {
         context_.diagnostics.error(
             request.location,
             fmt::format("there is no image file {}{}", shown(request.path),

@@ -96,7 +96,7 @@ float read_eta(MaterialContext& context, std::string_view name) {
                              "float, or spectrum");
         return fallback;
     }
-    const auto spectrum = sampled_spectrum(*parameter, context.build.description.directory, context.build.diagnostics);
+    const auto spectrum = sampled_spectrum(*parameter, context.build.description.folder, context.build.diagnostics);
     if (!spectrum) return fallback;
     const auto [low, high] = std::minmax_element(spectrum->values.begin(), spectrum->values.end());
     eta = *low == *high ? *low : spectrum->at(kSodiumLine);
@@ -155,8 +155,7 @@ void read_conductor(MaterialContext& context, const std::string& prefix) {
         const Parameter* parameter = reader.find(name);
         if (!parameter) return *named_spectrum(absent);
         if (parameter->type != ParameterType::kSpectrum) return {};
-        const auto spectrum =
-            sampled_spectrum(*parameter, context.build.description.directory, context.build.diagnostics);
+        const auto spectrum = sampled_spectrum(*parameter, context.build.description.folder, context.build.diagnostics);
         return spectrum ? *spectrum : *named_spectrum(absent);  // an error is reported already
     };
     const std::optional<SampledSpectrum> eta_spectrum = sampled(eta, "metal-Cu-eta"),
