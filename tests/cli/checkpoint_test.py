@@ -15,7 +15,7 @@ FAMILIES = {
     "path": [*PATH, "--passes", "1500"],
     "sppm": [*SPPM, "--passes", "150"],
     "vcm": ["--integrator", "vcm", "--resolution", "64x48", "--photon-map", "stochastic_hash", "--passes", "150"],
-    "mlt": ["--integrator", "mlt", "--resolution", "64x48", "--passes", "40"],
+    "mlt": ["--integrator", "mlt", "--resolution", "64x48", "--passes", "120"],
 }
 
 
@@ -40,20 +40,19 @@ def killed_until_done(program, scene, folder, more, random_numbers, most):
     return image.read_bytes(), killed
 
 
-def check_family(program, scene, folder, family, kills):
+def check_family(program, scene, folder, family, kills, backend="cpu"):
     """As many renderings as it takes to kill one so often."""
     whole = folder / "whole.pfm"
-    done = run(program, scene, *FAMILIES[family], "-o", whole)
+    more = [*FAMILIES[family], "--backend", backend]
+    done = run(program, scene, *more, "-o", whole, timeout=300)
     assert done.returncode == 0, done.stderr
     random_numbers = random.Random(7)
     killed = turn = 0
     while killed < kills:
         turn += 1
-        content, more = killed_until_done(
-            program, scene, folder / str(turn), FAMILIES[family], random_numbers, kills - killed
-        )
+        content, times = killed_until_done(program, scene, folder / str(turn), more, random_numbers, kills - killed)
         assert content == whole.read_bytes()
-        killed += more
+        killed += times
         assert turn <= kills, "renderings are done before they are killed"
 
 
@@ -63,9 +62,10 @@ def test_a_killed_rendering_goes_on_to_the_same_image(program, scene, tmp_path, 
 
 
 @pytest.mark.long
+@pytest.mark.parametrize("backend", ["cpu", "cpu-bvh2", "vulkan"])
 @pytest.mark.parametrize("family", FAMILIES)
-def test_a_rendering_that_is_killed_fifty_times_goes_on(program, scene, tmp_path, family):
-    check_family(program, scene, tmp_path, family, 50)
+def test_a_rendering_that_is_killed_fifty_times_goes_on(program, scene, tmp_path, family, backend):
+    check_family(program, scene, tmp_path, family, 50, backend)
 
 
 def test_the_image_so_far_is_written(program, scene, tmp_path):
