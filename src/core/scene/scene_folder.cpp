@@ -40,8 +40,8 @@ bool is_below(std::string_view path, std::string_view root) {
     return path.size() == root.size() || root.ends_with('/') || path[root.size()] == '/';
 }
 
-// Whether a path, read from left to right, is never in a folder that is neither below one of the roots nor above it: whether one is there,
-// and whether it has such a file, can be seen from what comes of "../other/file/../../mine".
+// Whether a path, read from left to right, is at any time in a folder that is neither below one of the roots nor above it. What comes of
+// "../other/file/../../mine" would tell whether there is such a file.
 bool strays(const fs::path& path, const std::vector<std::string>& roots) {
     fs::path place;
     for (const fs::path& name : path) {
