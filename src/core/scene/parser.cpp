@@ -1,7 +1,6 @@
 #include "core/scene/parser.h"
 
 #include "core/base/memory.h"
-
 #include "core/scene/number.h"
 
 #include <algorithm>
