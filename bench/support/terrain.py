@@ -1,5 +1,6 @@
 """Terrains of any number of triangles: the same hills, cut finer, so that only the number of triangles changes."""
 
+import shutil
 from pathlib import Path
 
 import numpy
@@ -67,7 +68,7 @@ def write_ply(path: Path, x: numpy.ndarray, y: numpy.ndarray, uv: bool) -> int:
 
 def terrain(triangles: int, glossy: bool = False) -> Path:
     """The scene file of a terrain with at least this many triangles, written if it does not exist."""
-    name = f"terrain-{triangles}" + ("-glossy" if glossy else "")
+    name = f"terrain-{triangles}" + ("-textured" if glossy else "")
     scene = generated_folder() / f"{name}.pbrt"
     if scene.exists():
         return scene
@@ -76,8 +77,7 @@ def terrain(triangles: int, glossy: bool = False) -> Path:
     count = 0
     for side, x in (("left", y[: cells // 2 + 1]), ("right", y[cells // 2 :])):
         count += write_ply(scene.with_name(f"{name}.{side}.ply"), x, y, glossy)
-    text = (HEAD + (GLOSSY if glossy else DIFFUSE)).format(
-        triangles=count, name=name, texture=SCENES / "reference" / "texture.png"
-    )
+    texture = shutil.copy(SCENES / "reference" / "texture.png", scene.parent)  # a scene reads its own folder only
+    text = (HEAD + (GLOSSY if glossy else DIFFUSE)).format(triangles=count, name=name, texture=Path(texture).name)
     scene.write_text(text)
     return scene

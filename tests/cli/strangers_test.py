@@ -151,3 +151,17 @@ def test_a_picture_that_becomes_large_is_refused(program, scene, tmp_path):
     done = render(program, scene, "--max-memory", "512M", cwd=tmp_path, preexec_fn=limited_to_2_gib)
     assert done.returncode == 2
     assert "--max-memory" in done.stderr and "12000x12000" in done.stderr
+
+
+def test_our_own_scenes_keep_to_their_folders(source_dir):
+    listed = subprocess.run(
+        ["git", "ls-files", "scenes", "experiments", "examples"],
+        cwd=source_dir,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    scenes = [source_dir / name for name in listed.stdout.split() if name.endswith(".pbrt")]
+    assert len(scenes) > 50
+    leaving = [str(scene) for scene in scenes if '"../' in scene.read_text() or '"/' in scene.read_text()]
+    assert leaving == []
