@@ -9,6 +9,9 @@
 
 namespace lampyris {
 
+// Texts of tests may name pictures of the tree, and those that tests make in the build's folder.
+inline const std::vector<std::string> kTestFolders = {LAMPYRIS_SOURCE_DIR, LAMPYRIS_BINARY_DIR};
+
 struct BuiltText {
     BuiltScene built;
     std::vector<std::string> errors, warnings, unsupported;
@@ -25,7 +28,8 @@ inline BuiltText build_text(const std::string& text, bool skip_unsupported = fal
     auto sources = std::make_shared<Sources>();
     Diagnostics diagnostics(*sources);
     diagnostics.set_skip_unsupported(skip_unsupported);
-    SceneDescription description = parse_scene_text("test.pbrt", text, directory, sources, diagnostics);
+    SceneDescription description =
+        parse_scene_text("test.pbrt", text, SceneFolder(directory, kTestFolders), sources, diagnostics);
     BuiltText result;
     result.built = build_scene(std::move(description), options, diagnostics);
     result.errors = diagnostics.errors();

@@ -1,6 +1,7 @@
 #include "support/render.h"
 
 #include "core/image/image_io.h"
+#include "support/build_text.h"
 
 #include <cmath>
 #include <filesystem>
@@ -67,6 +68,12 @@ std::vector<Rendered> render_seeds(SceneSource scene, const RenderSettings& sett
     return results;
 }
 
+SceneSource test_text(const std::string& text, const std::string& directory = ".") {
+    SceneSource source = SceneSource::of_text(text, "test.pbrt", directory);
+    source.allowed_folders = kTestFolders;
+    return source;
+}
+
 }  // namespace
 
 double Rendered::luminance(int x, int y) const {
@@ -89,11 +96,11 @@ double Rendered::mean_luminance() const {
 }
 
 std::vector<Rendered> render_text_seeds(const std::string& scene_text, const RenderSettings& settings, uint32_t seeds) {
-    return render_seeds(SceneSource::of_text(scene_text, "test.pbrt"), settings, seeds);
+    return render_seeds(test_text(scene_text), settings, seeds);
 }
 
 Rendered render_text(const std::string& scene_text, const RenderSettings& settings, const std::string& directory) {
-    return std::move(render_seeds(SceneSource::of_text(scene_text, "test.pbrt", directory), settings)[0]);
+    return std::move(render_seeds(test_text(scene_text, directory), settings)[0]);
 }
 
 Rendered render_file(const std::string& path, const RenderSettings& settings) {

@@ -65,7 +65,7 @@ Spirv forbid_contraction(const Spirv& spirv) {
     std::vector<uint32_t> results;
     for_each_instruction(spirv, [&](spv::Op op, const uint32_t* words, uint32_t count) {
         if (op == spv::OpDecorate && count == 3 && words[2] == spv::DecorationNoContraction) decorated.insert(words[1]);
-        if (is_float_arithmetic(op)) results.push_back(words[2]);
+        if (is_float_arithmetic(op) && count >= 3) results.push_back(words[2]);
     });
     Spirv out(spirv.begin(), spirv.begin() + std::min(kHeaderWords, spirv.size()));
     out.reserve(spirv.size() + 3 * results.size());
