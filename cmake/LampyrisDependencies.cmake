@@ -4,6 +4,7 @@ find_package(Threads REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(TBB REQUIRED)
 find_package(embree 3 REQUIRED)
+find_package(OpenEXR REQUIRED)
 find_package(OpenImageIO REQUIRED)
 find_package(OpenColorIO REQUIRED HINTS /usr/share/cmake)  # Debian's file is not where CMake looks
 find_package(glm REQUIRED)
@@ -12,8 +13,12 @@ find_package(spdlog REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
 target_link_libraries(lampyris_dependencies INTERFACE
-  Threads::Threads ZLIB::ZLIB TBB::tbb embree OpenImageIO::OpenImageIO OpenColorIO::OpenColorIO glm::glm
+  Threads::Threads ZLIB::ZLIB TBB::tbb embree OpenEXR::OpenEXR OpenColorIO::OpenColorIO glm::glm
   fmt::fmt spdlog::spdlog nlohmann_json::nlohmann_json ${CMAKE_DL_LIBS})
+# Of lampyris_formats alone. By way of an interface, since Debian's OpenImageIO names an include folder of OpenCV's, which need not
+# be there.
+add_library(lampyris_openimageio INTERFACE)
+target_link_libraries(lampyris_openimageio INTERFACE OpenImageIO::OpenImageIO)
 if(LAMPYRIS_VULKAN)
   find_package(Vulkan REQUIRED)
   find_package(glslang REQUIRED CONFIG)

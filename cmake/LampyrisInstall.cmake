@@ -18,6 +18,8 @@ target_sources(lampyris PRIVATE ${abi_header})
 
 set_target_properties(lampyris PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
 install(TARGETS lampyris lampyris_abi EXPORT LampyrisTargets)
+set_target_properties(lampyris_formats PROPERTIES INSTALL_RPATH $ORIGIN)
+install(TARGETS lampyris_formats DESTINATION ${CMAKE_INSTALL_LIBDIR})
 if(TARGET lampyris_program)
   file(RELATIVE_PATH to_library ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
   set_target_properties(lampyris_program PROPERTIES INSTALL_RPATH $ORIGIN/${to_library})

@@ -8,6 +8,7 @@ LAYERS = {
     "core/kernel": {"materials"},  # the dispatch, which the build writes
     "core/device": {"core/base", "core/kernel"},
     "core/image": {"core/base"},
+    "formats": {"core/base", "core/image"},
     "core/photons": {"core/base", "core/kernel", "core/device"},
     "core/scene": {"core/base", "core/kernel", "core/device", "core/image"},
     "core/render": {"core/base", "core/kernel", "core/device", "core/image", "core/photons", "core/scene"},

@@ -1,0 +1,99 @@
+// Images by OpenImageIO (core/image/other_formats.h).
+#include "core/image/other_formats.h"
+
+#include "core/base/error.h"
+#include "core/image/plausible.h"
+
+#include <fmt/format.h>
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <cctype>
+#include <memory>
+#include <string_view>
+
+namespace lampyris {
+namespace {
+
+std::string trimmed(std::string text) {
+    while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
+    return text;
+}
+
+// OpenImageIO's message, cut to its first line, without the file's name, which our message already has.
+std::string reason(const std::string& message, const std::string& path) {
+    std::string text = trimmed(message.substr(0, message.find('\n')));
+    if (const size_t at = text.find('"' + path + '"'); at != std::string::npos) text.replace(at, path.size() + 2, "it");
+    return text.empty() ? "its format is not known, or it is damaged" : text;
+}
+
+Image::Storage storage_of(const OIIO::TypeDesc& type) {
+    switch (type.basetype) {
+        case OIIO::TypeDesc::UINT8:
+        case OIIO::TypeDesc::INT8: return Image::Storage::kUint8;
+        case OIIO::TypeDesc::UINT16:
+        case OIIO::TypeDesc::INT16: return Image::Storage::kUint16;
+        case OIIO::TypeDesc::UINT32:
+        case OIIO::TypeDesc::INT32: return Image::Storage::kUint32;
+        case OIIO::TypeDesc::HALF: return Image::Storage::kHalf;
+        default: return Image::Storage::kFloat;
+    }
+}
+
+Image read(const std::string& path, uint64_t max_memory) {
+    OIIO::ImageSpec hints;
+    hints["oiio:UnassociatedAlpha"] = 1;  // do not multiply colour by alpha
+    const auto input = OIIO::ImageInput::open(path, &hints);
+    if (!input) throw InputError(reason(OIIO::geterror(), path));
+    const OIIO::ImageSpec& spec = input->spec();
+    if (spec.deep) throw InputError("it is a deep image, which has no single value per pixel");
+    if (spec.depth > 1) throw InputError("it is a volume, not an image");
+    if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0) throw InputError("it has no pixels");
+    check_plausible(path, spec.width, spec.height, spec.nchannels, int64_t(spec.format.basesize()), max_memory);
+
+    Image image(spec.width, spec.height, {spec.channelnames.begin(), spec.channelnames.end()});
+    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.pixels.data()))
+        throw InputError(reason(input->geterror(), path));
+    image.storage = storage_of(spec.format);
+    if (!spec.format.is_floating_point()) {
+        const std::string space = spec.get_string_attribute("oiio:ColorSpace");
+        image.encoding = space == "Linear" || space == "linear" ? Image::Encoding::kLinear : Image::Encoding::kSrgb;
+    }
+    if (spec.full_width != spec.width || spec.full_height != spec.height || spec.x != spec.full_x ||
+        spec.y != spec.full_y) {
+        image.x = spec.x - spec.full_x;
+        image.y = spec.y - spec.full_y;
+        image.full_width = spec.full_width;
+        image.full_height = spec.full_height;
+    }
+    for (const auto& attribute : spec.extra_attribs) {
+        const std::string name = attribute.name().string();
+        if (attribute.type() == OIIO::TypeDesc::STRING && name != "compression" && !name.starts_with("oiio:"))
+            image.metadata[name] = attribute.get_string();
+    }
+    return image;
+}
+
+std::vector<unsigned char> encode_png(int width, int height, const std::vector<uint8_t>& rgb,
+                                      const std::map<std::string, std::string>& metadata) {
+    OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    for (const auto& [name, value] : metadata)
+        if (name != "compression" && !name.starts_with("oiio:")) spec.attribute(name, value);
+    std::vector<unsigned char> bytes;
+    OIIO::Filesystem::IOVecOutput memory(bytes);
+    const auto output = OIIO::ImageOutput::create("memory.png");
+    if (!output) throw MachineError(fmt::format("OpenImageIO cannot write PNG: {}", OIIO::geterror()));
+    if (!output->set_ioproxy(&memory) || !output->open("memory.png", spec) ||
+        !output->write_image(OIIO::TypeDesc::UINT8, rgb.data()) || !output->close())
+        throw MachineError(fmt::format("OpenImageIO cannot write PNG: {}", output->geterror()));
+    return bytes;
+}
+
+}  // namespace
+}  // namespace lampyris
+
+extern "C" const lampyris::OtherFormats* lampyris_other_formats() {
+    static const lampyris::OtherFormats formats{lampyris::read, lampyris::encode_png};
+    return &formats;
+}
