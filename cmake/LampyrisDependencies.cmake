@@ -13,7 +13,7 @@ find_package(spdlog REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
 target_link_libraries(lampyris_dependencies INTERFACE
-  Threads::Threads ZLIB::ZLIB TBB::tbb embree OpenEXR::OpenEXR OpenColorIO::OpenColorIO glm::glm
+  Threads::Threads ZLIB::ZLIB TBB::tbb embree OpenEXR::OpenEXR OpenEXR::OpenEXRCore OpenColorIO::OpenColorIO glm::glm
   fmt::fmt spdlog::spdlog nlohmann_json::nlohmann_json ${CMAKE_DL_LIBS})
 # Of lampyris_formats alone. By way of an interface, since Debian's OpenImageIO names an include folder of OpenCV's, which need not
 # be there.

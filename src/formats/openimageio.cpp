@@ -9,6 +9,9 @@
 #include <OpenImageIO/imageio.h>
 
 #include <cctype>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <string_view>
 
@@ -40,7 +43,25 @@ Image::Storage storage_of(const OIIO::TypeDesc& type) {
     }
 }
 
+// libpng makes room for as many bytes of a chunk as a damaged file claims (W3C, PNG, 5.3: a length of four bytes, most significant
+// first, a type of four, the data, and a check of four).
+void check_png_chunks(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    char signature[8] = {};
+    if (!file.read(signature, 8) || std::memcmp(signature, "\x89PNG\r\n\x1a\n", 8) != 0) return;
+    const auto size = int64_t(std::filesystem::file_size(path));
+    unsigned char head[8];
+    while (file.read(reinterpret_cast<char*>(head), 8)) {
+        const int64_t bytes = int64_t(head[0]) << 24 | head[1] << 16 | head[2] << 8 | head[3];
+        const int64_t left = size - int64_t(file.tellg());
+        if (bytes > left)
+            throw InputError(fmt::format("one of its chunks is said to have {} bytes, and {} follow", bytes, left));
+        file.seekg(bytes + 4, std::ios::cur);
+    }
+}
+
 Image read(const std::string& path, uint64_t max_memory) {
+    check_png_chunks(path);
     OIIO::ImageSpec hints;
     hints["oiio:UnassociatedAlpha"] = 1;  // do not multiply colour by alpha
     const auto input = OIIO::ImageInput::open(path, &hints);

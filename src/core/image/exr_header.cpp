@@ -3,55 +3,79 @@
 #include "core/base/error.h"
 
 #include <fmt/format.h>
+#include <OpenEXR/openexr.h>
 
-#include <bit>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 
 namespace lampyris {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "numbers are copied as they lie in the file");
+thread_local std::string last_error;
 
-constexpr uint32_t kMultiPart = 0x1000;  // of the version field: several headers, the last one empty
+void keep_error(exr_const_context_t, exr_result_t, const char* message) { last_error = message; }
 
-// Ended by a zero byte; names have at most 255 bytes (OpenEXR's file layout).
-bool read_name(std::ifstream& file, std::string& name) {
-    name.clear();
-    for (int c = file.get(); c != std::ifstream::traits_type::eof(); c = file.get()) {
-        if (c == 0) return true;
-        if (name.size() == 255) return false;
-        name += char(c);
+struct Context {
+    explicit Context(const std::string& path) {
+        exr_context_initializer_t settings = EXR_DEFAULT_CONTEXT_INITIALIZER;
+        settings.error_handler_fn = keep_error;
+        last_error.clear();
+        result = exr_start_read(&handle, path.c_str(), &settings);
     }
-    return false;
+    ~Context() { exr_finish(&handle); }
+    Context(const Context&) = delete;
+    Context& operator=(const Context&) = delete;
+
+    exr_context_t handle = nullptr;
+    exr_result_t result = EXR_ERR_SUCCESS;
+};
+
+// Up to a zero byte, which is read, too.
+std::string read_name(std::ifstream& file) {
+    std::string name;
+    std::getline(file, name, '\0');
+    return name;
+}
+
+// The list of channels ends with an empty name, and has to end where its attribute does: the two libraries go on reading from
+// different places otherwise.
+bool ends_where_it_should(std::ifstream& file, std::streamoff bytes) {
+    constexpr std::streamoff kChannel = 16;  // after its name: type, linearity, sampling
+    const std::streamoff end = std::streamoff(file.tellg()) + bytes;
+    while (file && !read_name(file).empty()) file.seekg(kChannel, std::ios::cur);
+    return file && std::streamoff(file.tellg()) == end;
+}
+
+// Names and types of a header's attributes end with a zero byte; a length of four bytes and the value follow.
+bool channels_are_whole(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    file.seekg(8);  // magic number and version
+    while (file && !read_name(file).empty()) {
+        const std::string type = read_name(file);
+        int32_t bytes = 0;
+        if (!file.read(reinterpret_cast<char*>(&bytes), sizeof bytes)) return false;
+        const std::streamoff next = std::streamoff(file.tellg()) + bytes;
+        if (type == "chlist" && !ends_where_it_should(file, bytes)) return false;
+        file.seekg(next);
+    }
+    return bool(file);
 }
 
 }  // namespace
 
 void check_exr_header(const std::string& path) {
+    const Context context(path);
+    if (context.result == EXR_ERR_SUCCESS && !channels_are_whole(path))
+        throw InputError("its header is damaged: the list of channels has another length than it says");
     const auto size = int64_t(std::filesystem::file_size(path));
-    std::ifstream file(path, std::ios::binary);
-    uint32_t magic = 0, version = 0;
-    file.read(reinterpret_cast<char*>(&magic), sizeof magic).read(reinterpret_cast<char*>(&version), sizeof version);
-    if (!file) throw InputError("it ends within its header");
-    for (bool last = false; !last;) {
-        int attributes = 0;
-        for (std::string name, type;; ++attributes) {
-            if (!read_name(file, name)) throw InputError("its header is damaged");
-            if (name.empty()) break;
-            int32_t bytes = 0;
-            if (!read_name(file, type) || !file.read(reinterpret_cast<char*>(&bytes), sizeof bytes))
-                throw InputError("its header is damaged");
-            const int64_t left = size - int64_t(file.tellg());
-            if (bytes < 0 || bytes > left)
-                throw InputError(
-                    fmt::format("its attribute '{}' is said to have {} bytes, and {} follow", name, bytes, left));
-            file.seekg(bytes, std::ios::cur);
-        }
-        last = (version & kMultiPart) == 0 || attributes == 0;
-    }
+    int32_t chunks = 0;
+    if (context.result != EXR_ERR_SUCCESS || exr_get_chunk_count(context.handle, 0, &chunks) != EXR_ERR_SUCCESS)
+        throw InputError(fmt::format("its header is damaged{}{}", last_error.empty() ? "" : ": ", last_error));
+    // The file has the place of each in eight bytes.
+    if (8 * int64_t(chunks) > size)
+        throw InputError(
+            fmt::format("its header says {} tiles or blocks of lines, but the file has only {} bytes", chunks, size));
 }
 
 }  // namespace lampyris
