@@ -43,8 +43,8 @@ Image::Storage storage_of(const OIIO::TypeDesc& type) {
     }
 }
 
-// libpng makes room for as many bytes of a chunk as a damaged file claims (W3C, PNG, 5.3: a length of four bytes, most significant
-// first, a type of four, the data, and a check of four).
+// libpng makes room for as many bytes of a chunk as a damaged file claims (PNG's specification, 5.3: a length of four
+// bytes, most significant first, a type of four, the data, and a check of four).
 void check_png_chunks(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     char signature[8] = {};

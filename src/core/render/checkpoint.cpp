@@ -143,6 +143,7 @@ Checkpoint checkpoint_of(const Json& json, std::span<const std::byte> binary) {
         return taken;
     };
     const size_t pixels = count_of(json.at("pixels"));
+    if (pixels == 0) throw std::out_of_range("its film has no pixels");
     if (pixels > binary.size() / sizeof(kernel::FilmPixel)) throw std::out_of_range("its film is longer than the file");
     c.film.resize(pixels);
     std::memcpy(c.film.data(), take(pixels * sizeof(kernel::FilmPixel)).data(), pixels * sizeof(kernel::FilmPixel));
