@@ -162,12 +162,12 @@ TEST(Camera, LensRaysMeetInThePlaneOfFocus) {
             scene.scene.record.camera.focal_distance = kFocus;
             std::vector<vec4> inputs;
             for (int i = 0; i < 400; ++i)
-                inputs.emplace_back(130, 70, (float(i % 20) + 0.5f) / 20, (float(i) / 20 + 0.5f) / 20.5f);
+                inputs.emplace_back(130, 70, (float(i % 20) + 0.5f) / 20, (float(i / 20) + 0.5f) / 20);  // NOLINT
             const auto rays = run(*device, scene.finish(), {1, 0, 0, 0}, inputs, uint32_t(inputs.size()), 2);
             const bool perspective = kind == kernel::CAMERA_PERSPECTIVE;
             const double x = -2 + 130 * 0.02, y = 1 - 70 * 0.02, scale = perspective ? kFocus : 1;
             const dvec3 focus(5 - kFocus, 1 + scale * x, 2 + scale * y);
-            double farthest = 0;
+            double farthest = 0, mean_square = 0;
             dvec3 mean(0.0);
             for (size_t i = 0; i < inputs.size(); ++i) {
                 const dvec3 o(rays[2 * i]), d(rays[2 * i + 1]);
@@ -177,7 +177,10 @@ TEST(Camera, LensRaysMeetInThePlaneOfFocus) {
                 EXPECT_NEAR(on_lens.x, 0, 1e-6);
                 farthest = std::max(farthest, glm::length(on_lens));
                 mean += on_lens / double(inputs.size());
+                mean_square += glm::dot(on_lens, on_lens) / double(inputs.size());
             }
+            // Uniform over a disk: E r^2 = R^2 / 2. A radius that is 0.5 % wrong shows.
+            EXPECT_NEAR(mean_square, kRadius * kRadius / 2.0, 0.01 * kRadius * kRadius / 2.0);
             EXPECT_LT(farthest, kRadius * 1.0001);
             EXPECT_GT(farthest, kRadius * 0.9);
             EXPECT_LT(glm::length(mean), 0.1 * kRadius);
