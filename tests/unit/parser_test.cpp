@@ -195,6 +195,19 @@ Shape "sphere")");
     expect_near(transform_point(transform.matrix[1], {0, 0, 0}), {1, 1, 0});
 }
 
+// Each entity looks through the parameters that Attribute set: so many different ones are an error, at once.
+TEST(Parser, AttributeKeepsAsManyParametersAsAnEntityMayHave) {
+    std::string text = "WorldBegin\n";
+    for (int i = 0; i < 256; ++i) text += "Attribute \"shape\" \"float a" + std::to_string(i) + "\" 1\n";
+    EXPECT_TRUE(Parsed(text).diagnostics.errors().empty());
+    EXPECT_TRUE(Parsed(text + "Attribute \"shape\" \"float a7\" 2\n").diagnostics.errors().empty());
+    for (int i = 256; i < 100000; ++i) text += "Attribute \"shape\" \"float a" + std::to_string(i) + "\" 1\n";
+    const auto errors = Parsed(text).diagnostics.errors();
+    ASSERT_FALSE(errors.empty());
+    EXPECT_NE(errors[0].find("scene.pbrt:258:1: error: Attribute has set 257 parameters of shape"), std::string::npos)
+        << errors[0];
+}
+
 TEST(Parser, AttributeBlocksRestoreEverything) {
     const SceneDescription scene = parse(R"(WorldBegin
 MakeNamedMedium "fog" "string type" "homogeneous"

@@ -1,4 +1,5 @@
 // Directives of the world: blocks, materials, textures, media, lights, shapes, objects.
+#include "core/scene/limits.h"
 #include "core/scene/parser.h"
 
 namespace lampyris {
@@ -115,6 +116,13 @@ void Parser::attribute(const Token& directive) {
         if (target != name) continue;
         // The new ones go first: they override those of an outer block.
         if (*defaults) list.add_defaults(**defaults);
+        if (list.parameters.size() > kMostDefaults) {
+            diagnostics_->error(
+                directive.location,
+                "Attribute has set " + std::to_string(list.parameters.size()) + " parameters of " + target,
+                "a " + target + " has fewer; at most " + std::to_string(kMostDefaults) + " are kept");
+            return;
+        }
         for (Parameter& parameter : list.parameters) parameter.used = true;
         *defaults = std::make_shared<const std::vector<Parameter>>(std::move(list.parameters));
         return;
