@@ -15,4 +15,7 @@ Image read_exr(const std::string& path, uint64_t max_memory);
 // Counts in `result` what half floats had to clamp. Throws MachineError if OpenEXR refuses.
 std::vector<unsigned char> encode_exr(const Image& image, const WriteOptions& options, WriteResult& result);
 
+// How many threads pack and unpack; they start with the first call. Internal to the two files.
+int exr_threads();
+
 }  // namespace lampyris

@@ -20,7 +20,6 @@
 #include <cstring>
 #include <fstream>
 #include <string_view>
-#include <thread>
 #include <tuple>
 
 namespace lampyris {
@@ -118,7 +117,7 @@ bool is_exr(const std::string& path) {
 Image read_exr(const std::string& path, uint64_t max_memory) {
     check_exr_header(path);
     try {
-        Imf::MultiPartInputFile file(path.c_str(), int(std::thread::hardware_concurrency()));
+        Imf::MultiPartInputFile file(path.c_str(), exr_threads());
         return read_first_part(file, path, max_memory);
     } catch (const Error&) {
         throw;

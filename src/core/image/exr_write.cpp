@@ -9,6 +9,7 @@
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfThreading.h>
 #include <OpenEXR/ImfTiledOutputFile.h>
 
 #include <algorithm>
@@ -93,6 +94,15 @@ std::vector<std::vector<half>> halves_of(const Image& image, size_t& clamped) {
 
 }  // namespace
 
+int exr_threads() {
+    static const int threads = [] {
+        const int cores = int(std::thread::hardware_concurrency());
+        Imf::setGlobalThreadCount(cores);
+        return cores;
+    }();
+    return threads;
+}
+
 std::vector<unsigned char> encode_exr(const Image& image, const WriteOptions& options, WriteResult& result) {
     Bytes bytes;
     try {
@@ -112,13 +122,12 @@ std::vector<unsigned char> encode_exr(const Image& image, const WriteOptions& op
                           : Imf::Slice::Make(Imf::FLOAT, image.pixels.data() + c, window, pixel, width * pixel));
         }
         MemoryStream stream(bytes);
-        const int threads = int(std::thread::hardware_concurrency());
         if (options.tile_size > 0) {
-            Imf::TiledOutputFile file(stream, header, threads);
+            Imf::TiledOutputFile file(stream, header, exr_threads());
             file.setFrameBuffer(buffer);
             file.writeTiles(0, file.numXTiles() - 1, 0, file.numYTiles() - 1);
         } else {
-            Imf::OutputFile file(stream, header, threads);
+            Imf::OutputFile file(stream, header, exr_threads());
             file.setFrameBuffer(buffer);
             file.writePixels(image.height);
         }
