@@ -1,10 +1,13 @@
 // From a scene's text to its arrays: orientation, transforms, order, and which directive needs which effect.
+#include "core/image/image_io.h"
 #include "support/build_text.h"
+#include "support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+#include <string>
 
 namespace lampyris {
 namespace {
@@ -149,6 +152,17 @@ TEST(BuildScene, ExposureAndCrop) {
     EXPECT_EQ(smaller.scene().width(), 20u);
 }
 
+// Both ends of a crop window are rounded up, as in pbrt-v4.
+TEST(BuildScene, CropWindowsAreRoundedUp) {
+    const BuiltText text = build_text(R"(
+Camera "perspective"
+Film "rgb" "integer xresolution" 10 "integer yresolution" 6 "float cropwindow" [ 0.25 0.75 0.5 0.875 ]
+WorldBegin
+)");
+    ASSERT_EQ(text.all_errors(), "");
+    EXPECT_EQ(text.built.settings.crop, (std::array<int, 4>{3, 3, 8, 6}));  // of 2.5, 3, 7.5 and 5.25
+}
+
 TEST(BuildScene, LightUnitsArePbrts) {
     const BuiltText text = build_world(R"(
 AttributeBegin
@@ -170,6 +184,58 @@ AttributeEnd
     EXPECT_NEAR(luminance(lights[3].emission), 1.0f / std::numbers::pi_v<float>, 1e-5f);  // 2 pi (1 - cos 60) = pi
     EXPECT_NEAR(luminance(lights[4].emission), 7.0f, 1e-4f);
     EXPECT_EQ(lights[4].p0, glm::vec3(0.0f, 0.0f, 1.0f));
+}
+
+// The smooth step of a spot's cosine is 1/2 on average between its angles, so that the power is
+// 2 pi ((1 - cos 30) + (cos 30 - cos 60) / 2).
+TEST(BuildScene, PowerOfASpotCountsItsFalloff) {
+    const BuiltText text = build_world(R"(
+LightSource "spot" "float coneangle" 60 "float conedeltaangle" 30 "float power" 1 "rgb I" [ 1 1 1 ]
+)");
+    ASSERT_EQ(text.all_errors(), "");
+    const double begin = std::sqrt(0.75), end = 0.5;
+    const double sphere = 2.0 * std::numbers::pi * ((1.0 - begin) + (begin - end) / 2.0);
+    EXPECT_NEAR(text.scene().lights[0].emission[0], 1.0 / sphere, 1e-5);
+}
+
+void write_grey(const std::string& file, int side, const auto& value) {
+    Image image(side, side, {"R", "G", "B"});
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x)
+            for (int c = 0; c < 3; ++c) image.at(x, y, c) = value(x, y);
+    write_image(file, image);
+}
+
+// A white picture, 90 degrees wide and high, fills the solid angle 4 asin(sin^2 45) = 2 pi / 3. The sum over its pixels
+// is the midpoint rule, whose relative error is 2.4e-4 for 32 x 32.
+TEST(BuildScene, PowerOfAProjectionIsThatOfItsSolidAngle) {
+    const test::TemporaryFolder folder;
+    write_grey(folder / "white.pfm", 32, [](int, int) { return 1.0f; });
+    const char* scene = R"(
+Camera "perspective"
+WorldBegin
+LightSource "projection" "string filename" "white.pfm" "float fov" 90 "float power" 6
+)";
+    const BuiltText text = build_text(scene, false, {}, folder.string());
+    ASSERT_EQ(text.all_errors(), "");
+    EXPECT_NEAR(text.scene().lights[0].emission[0], 6.0 / (2.0 * std::numbers::pi / 3.0), 1e-3);
+}
+
+// A sky that is 2 where s and t are between 1/4 and 1/2 on the octahedral square, else 0. With u = 1 - 2 s and
+// v = 1 - 2 t, z is 1 - (u + v)^2 there, on average 17/24, over the solid angle 4 pi / 16. For 4 x 4 texels, the
+// midpoint rule's relative error is 0.37 %.
+TEST(BuildScene, IlluminanceOfASkyIsThatOfItsImage) {
+    const test::TemporaryFolder folder;
+    write_grey(folder / "sky.pfm", 16, [](int x, int y) { return x >= 4 && x < 8 && y >= 4 && y < 8 ? 2.0f : 0.0f; });
+    const char* scene = R"(
+Camera "perspective"
+WorldBegin
+LightSource "infinite" "string filename" "sky.pfm" "float illuminance" 5
+)";
+    const BuiltText text = build_text(scene, false, {}, folder.string());
+    ASSERT_EQ(text.all_errors(), "");
+    const double of_image = 2.0 * 17.0 / 24.0 * 4.0 * std::numbers::pi / 16.0;
+    EXPECT_NEAR(text.scene().lights[0].emission[0], 5.0 / of_image, 0.006 * 5.0 / of_image);
 }
 
 TEST(BuildScene, MaterialsAndTheirEffects) {

@@ -48,6 +48,14 @@ TEST(LoopSubdivision, FlatSheetsStayFlatAndKeepTheirBoundary) {
     }
 }
 
+// On a boundary, the limit is (1 - 2 g) v + g (both neighbours on the boundary) with g = 1/5, as in pbrt-v4.
+TEST(LoopSubdivision, BoundariesHavePbrtsLimit) {
+    const SubdividedMesh mesh = loop_subdivide({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}, 0);
+    ASSERT_EQ(mesh.error, "");
+    EXPECT_LT(glm::length(mesh.positions[0] - glm::vec3(0.2f, 0.2f, 0.0f)), 1e-6f);
+    EXPECT_LT(glm::length(mesh.positions[2] - glm::vec3(0.8f, 0.8f, 0.0f)), 1e-6f);
+}
+
 TEST(LoopSubdivision, BrokenMeshesAreTold) {
     EXPECT_NE(loop_subdivide({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 1}}, 1).error.find("twice"), std::string::npos);
     EXPECT_NE(loop_subdivide({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2}, {0, 1, 3}}, 1)

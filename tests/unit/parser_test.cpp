@@ -173,6 +173,15 @@ TEST(Parser, TheCameraLooksAlongZWithXToTheRight) {
     EXPECT_LT(std::abs(glm::determinant(world_from_camera) - 1.0f), 1e-6f);
 }
 
+// An up vector of any length that leans forward: the axes are unit vectors nevertheless.
+TEST(Parser, TheCamerasAxesAreOfUnitLength) {
+    const SceneDescription scene = parse("LookAt 5 6 7  5 6 9  0 3 4\nCamera \"perspective\"\nWorldBegin");
+    const glm::mat4& world_from_camera = scene.camera.world_from_camera.matrix[0];
+    expect_near(transform_point(world_from_camera, {1, 0, 0}), {6, 6, 7});
+    expect_near(transform_point(world_from_camera, {0, 1, 0}), {5, 7, 7});
+    expect_near(transform_point(world_from_camera, {0, 0, 1}), {5, 6, 8});
+}
+
 TEST(Parser, CameraTransformIsTheInverseOfTheCurrentOne) {
     const SceneDescription scene = parse(R"(Translate 0 0 10 Scale 2 2 2 Camera "perspective" WorldBegin
 CoordSysTransform "camera" Shape "sphere"
