@@ -7,6 +7,8 @@ import subprocess
 
 import pytest
 
+from support.render_program import run as render
+
 KEYS = {"mse", "rmse", "relmse", "relmse_trimmed", "mape", "smape", "flip", "mean", "reference_mean", "non_finite"}
 
 
@@ -75,6 +77,21 @@ def test_a_crop_compares_its_pixels_only(program, pair):
     assert lower["resolution"] == [12, 9]
     upper = json.loads(run(program, *pair, "--json", "--crop=0,0,3,1").stdout)
     assert upper["mse"] == pytest.approx(0.25)
+
+
+def test_a_part_is_compared_with_its_place_in_the_whole(program, scene, tmp_path):
+    """Pixels of a crop are those of the whole picture, whichever of the two is the reference."""
+    whole, part = tmp_path / "whole.exr", tmp_path / "part.exr"
+    for image, options in ((whole, ()), (part, ("--crop", "5,3,20,11"))):
+        done = render(program, scene, "-o", image, "--passes", "2", *options)
+        assert done.returncode == 0, done.stderr
+    for pair in ((part, whole), (whole, part)):
+        done = run(program, *pair, "--json")
+        assert done.returncode == 0, done.stderr
+        result = json.loads(done.stdout)
+        assert result["resolution"] == [15, 8]
+        assert result["mse"] == 0
+        assert result["mean"][0] > 0
 
 
 @pytest.mark.parametrize("crop", ["0,0,13,1", "5,5,5,6", "-1,0,3,3", "1,2,3", "a,b,c,d"])

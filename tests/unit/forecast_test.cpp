@@ -42,13 +42,13 @@ struct History {
     }
 };
 
-double coverage(double exponent, ErrorRate rate, double& width) {
+double coverage(double exponent, ErrorRate rate, double& width, double error_noise = 0.04) {
     // Over 1000 histories, the share has a standard deviation of 0.0095 if the truth is 0.9.
     constexpr int kHistories = 1000;
     int within = 0;
     std::vector<double> ratios;
     for (int i = 0; i < kHistories; ++i) {
-        History history{exponent, 0.04, 0.05, std::mt19937(uint32_t(1 + i))};
+        History history{exponent, error_noise, 0.05, std::mt19937(uint32_t(1 + i))};
         const std::vector<ErrorPoint> points = history.until(uint64_t(16 + i));
         const ErrorForecast forecast = forecast_halving(points, rate);
         const double truth = history.truth(points);
@@ -72,6 +72,15 @@ TEST(Forecast, CoversTheTruthAsOftenAsItSays) {
     EXPECT_LT(width, 4.0);
     EXPECT_GE(coverage(0.5, ErrorRate::of_photons(2.0 / 3.0), width), 0.87);
     EXPECT_LT(width, 6.0);
+}
+
+// Where the noise of errors is most of the uncertainty: that of the estimate at the end of the history, and that of the one
+// in the future. With one of them alone, 0.83 would be covered. The share is 0.904 here: with other seeds, a correct
+// forecast fails once in 6000 tests.
+TEST(Forecast, CoversTheTruthOfNoisyErrors) {
+    double width = 0.0;
+    EXPECT_GE(coverage(1.0, ErrorRate::of_samples(), width, 0.08), 0.87);
+    EXPECT_LT(width, 3.0);
 }
 
 TEST(Forecast, KnowsExactLaws) {
