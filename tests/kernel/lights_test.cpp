@@ -211,21 +211,23 @@ TEST(Lights, InfiniteLightsAreSampledWithTheirDensity) {
     for (const std::string& backend : usable_backends()) {
         const auto device = create_device(backend);
         const KernelHandle probe = light_probe(*device, kInfiniteEffects);
-        for (int lights = 1; lights <= 3; ++lights) {  // constant; image; both
+        for (int lights = 1; lights <= 4; ++lights) {  // constant; image; both; image of a stretched sky
             SCOPED_TRACE(backend + ", kinds " + std::to_string(lights));
             TestScene scene;
-            if (lights & 1) {
+            if (lights == 1 || lights == 3) {
                 kernel::LightRecord light{};
                 light.kind = kernel::LIGHT_INFINITE;
                 light.image = light.transform = kernel::NONE;
                 scene.add_light(light, vec3(0.3f));
             }
-            if (lights & 2) {
+            if (lights >= 2) {
                 kernel::LightRecord light{};
                 light.kind = kernel::LIGHT_INFINITE_IMAGE;
                 light.image = scene.add_image(picture, 8, 8, kernel::WRAP_OCTAHEDRAL);
                 light.transform = uint32_t(scene.scene.transforms.size());
-                scene.scene.transforms.push_back(transform_of(glm::rotate(dmat4(1.0), 0.5, dvec3(1, 0, 0))));
+                const dvec3 stretch = lights == 4 ? dvec3(1.25, 1, 0.8) : dvec3(1);
+                scene.scene.transforms.push_back(
+                    transform_of(glm::scale(glm::rotate(dmat4(1.0), 0.5, dvec3(1, 0, 0)), stretch)));
                 light.distribution =
                     append_image_distribution(picture, 8, 8, kEvenLightShare, scene.scene.distributions);
                 scene.add_light(light, vec3(0.5f), 2.0f);

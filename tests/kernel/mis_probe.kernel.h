@@ -10,7 +10,9 @@ CONST uint PROBE_INFINITE = 2u;
 CONST uint PROBE_POINT = 3u;
 CONST uint PROBE_DISTANT = 4u;
 
-CONST uint PROBE_STRATEGIES = 8u;  // places per path: s vertices from the light, 0 to 7
+// Places per path: s vertices from the light, 0 to 7; then those of merging at vertex 0 to 7.
+CONST uint PROBE_STRATEGIES = 8u;
+CONST uint PROBE_WEIGHTS = 16u;
 
 struct ProbeVertex {
     vec4 position;    // at infinity: a point in the light's direction from the next vertex
@@ -34,6 +36,7 @@ struct ProbePath {
     float lens_samples;
     float radius;   // of the scene
     float samples;  // of each strategy that connects two vertices
+    float eta;      // of merging; 0: none
 };
 
 BUFFER_RO(0, uvec4, what)  // heuristic
@@ -83,14 +86,14 @@ FN void arrives(IN(ProbePath) p, INOUT(MisSums) m, uint at, uint previous, bool 
 }
 
 // subpath_leaves
-FN void leaves(INOUT(MisSums) m, uint at, uint previous, uint next, uint h) {
+FN void leaves(IN(ProbePath) p, INOUT(MisSums) m, uint at, uint previous, uint next, uint h) {
     ProbeVertex v = vertices[at];
     bool from_light = next > at;
     if (v.specular != 0u) {
         mis_scatter_specular(m, cosine(at, previous), from_light ? v.eta : 1.0f / v.eta, h);
     } else {
         mis_scatter(m, cosine(at, next), from_light ? v.to_camera : v.to_light, from_light ? v.to_light : v.to_camera,
-                    0.0f, h);
+                    p.eta, h);
     }
 }
 
@@ -105,7 +108,7 @@ FN float weight_of_light(IN(ProbePath) p, IN(MisSums) m, uint h) {
     } else {
         emitted = mis_area_density(p, p.pw);
     }
-    float others = mis_end(m, emitted * abs(cosine(x, p.first)), vertices[x].to_camera, 0.0f, h);
+    float others = mis_end(m, emitted * abs(cosine(x, p.first)), vertices[x].to_camera, p.eta, h);
     if (p.light == PROBE_AREA || p.light == PROBE_INFINITE) others += mis_term(vertices[x].to_light / p.pd, h);
     return mis_weight(others);
 }
@@ -121,8 +124,18 @@ FN float weight_of_connection(IN(ProbePath) p, IN(MisSums) m, uint x, uint h) {
     float from_x = vertices[x].to_light * abs(cosine(y, x)) * inverse_d2;
     float from_y = vertices[y].to_camera * abs(cosine(x, y)) * inverse_d2;
     float others =
-        mis_end(m_y, from_x, vertices[y].to_light, 0.0f, h) + mis_end(m, from_y, vertices[x].to_camera, 0.0f, h);
+        mis_end(m_y, from_x, vertices[y].to_light, p.eta, h) + mis_end(m, from_y, vertices[x].to_camera, p.eta, h);
     return mis_weight(others / mis_term(p.samples, h));
+}
+
+// merge.consumer.h
+FN float weight_of_merging(IN(ProbePath) p, IN(MisSums) m, uint at, uint h) {
+    vec2 sums = light_sums[at - p.first];
+    MisSums y;
+    y.a = sums.x;
+    y.d = sums.y;
+    return mis_weight(mis_merged_end(y, vertices[at].to_light, p.eta, h) +
+                      mis_merged_end(m, vertices[at].to_camera, p.eta, h));
 }
 
 // weight_of_hit_light, weight_of_environment: the sums are those that leave vertex 1
@@ -135,8 +148,8 @@ FN float weight_of_hit(IN(ProbePath) p, IN(MisSums) m, uint h) {
 KERNEL(mis_probe) {
     uint h = what[0].x;
     ProbePath p = paths[index];
-    uint result = PROBE_STRATEGIES * index;
-    for (uint s = 0u; s < PROBE_STRATEGIES; ++s) weights[result + s] = -1.0f;
+    uint result = PROBE_WEIGHTS * index;
+    for (uint s = 0u; s < PROBE_WEIGHTS; ++s) weights[result + s] = -1.0f;
     uint camera = p.first + p.count - 1u;
 
     MisSums m = light_begins(p, h);
@@ -146,9 +159,9 @@ KERNEL(mis_probe) {
         light_sums[i] = vec2(m.a, m.d);
         if (at + 1u == camera && vertices[at].specular == 0u) {  // splat_vertex
             float from_camera = mis_area_density(p, importance(p, at) * abs(cosine(at, camera))) / p.lens_samples;
-            weights[result + i + 1u] = mis_weight(mis_end(m, from_camera, vertices[at].to_light, 0.0f, h));
+            weights[result + i + 1u] = mis_weight(mis_end(m, from_camera, vertices[at].to_light, p.eta, h));
         }
-        leaves(m, at, at - 1u, at + 1u, h);
+        leaves(p, m, at, at - 1u, at + 1u, h);
     }
 
     m.a = mis_term(p.lens_samples / mis_area_density(p, importance(p, camera - 1u)), h);  // camera_path_meets_first
@@ -157,13 +170,14 @@ KERNEL(mis_probe) {
         uint at = p.first + i;
         arrives(p, m, at, at + 1u, at + 1u == camera, h);
         if (vertices[at].specular == 0u) {
+            if (p.eta > 0.0f) weights[result + PROBE_STRATEGIES + i] = weight_of_merging(p, m, at, h);
             if (i == 1u) {
                 weights[result + 1u] = weight_of_light(p, m, h);
             } else if (vertices[at - 1u].specular == 0u) {
                 weights[result + i] = weight_of_connection(p, m, at, h);
             }
         }
-        leaves(m, at, at + 1u, at - 1u, h);
+        leaves(p, m, at, at + 1u, at - 1u, h);
     }
     if (p.light == PROBE_AREA || p.light == PROBE_INFINITE) weights[result] = weight_of_hit(p, m, h);
 }

@@ -21,7 +21,7 @@ using glm::vec3;
 using glm::vec4;
 
 constexpr uint32_t kArea = 0, kPassed = 1, kInfinite = 2, kPoint = 3, kDistant = 4;
-constexpr uint32_t kStrategies = 8;
+constexpr uint32_t kStrategies = 8, kWeights = 2 * kStrategies;  // of connections, then of merging
 constexpr uint32_t kPaths = 4000;
 
 // A cosine is off by about 1e-7, so the least one here by 5e-6 of itself. The power heuristic doubles that, and a quarter of
@@ -39,7 +39,7 @@ struct ProbeVertex {
 struct ProbePath {
     uint32_t first, count, light, orthographic;
     float pe, pw, pd, sides;
-    float pc, lens_samples, radius, samples;
+    float pc, lens_samples, radius, samples, eta;
 };
 
 struct Paths {
@@ -55,7 +55,8 @@ enum class Mistake {
     kOrthographicDistance,
     kNoLensSamples,
     kAreaDensityOfLight,
-    kOneConnection
+    kOneConnection,
+    kFewMerged
 };
 
 // One path, and the densities with which its vertices are sampled from their neighbours.
@@ -78,11 +79,23 @@ class Reference {
         return product;
     }
 
+    // The same of merging at vertex i: both ends sample it, and a light path's vertex counts if it is within the radius.
+    double merging(uint32_t i) const {
+        if (i == 0 || i + 1 >= path_.count || is_specular(i)) return 0;
+        double product = double(path_.eta) * path_.radius * path_.radius;
+        if (mistake_ == Mistake::kFewMerged) product /= 10;
+        for (uint32_t k = 0; k <= i; ++k) product *= from_light(k);
+        for (uint32_t k = i; k + 1 < path_.count; ++k) product *= from_camera(k);
+        return product;
+    }
+
     std::vector<double> weights(int beta) const {
-        std::vector<double> terms(kStrategies, -1);
+        std::vector<double> terms(kWeights, -1);
         double sum = 0;
-        for (uint32_t s = 0; s < path_.count; ++s)
+        for (uint32_t s = 0; s < path_.count; ++s) {
             if (density(s) > 0) sum += terms[s] = std::pow(density(s), beta);
+            if (merging(s) > 0) sum += terms[kStrategies + s] = std::pow(merging(s), beta);
+        }
         for (double& term : terms)
             if (term >= 0) term /= sum;
         return terms;
@@ -185,6 +198,7 @@ class Maker {
         p.lens_samples = pixels * spread(1);
         p.samples = float(1 + random_() % 4);
         p.pc = pixels * spread(1) * (p.orthographic ? per_area : 1.0f);
+        p.eta = random_() % 2 ? spread(2) : 0.0f;
         one.paths = {p};
         for (uint32_t i = 0; i < p.count; ++i) {
             one.vertices.push_back(vertex(i));
@@ -236,19 +250,19 @@ const Paths& random_paths() {
     return paths;
 }
 
-// kStrategies weights of each path; -1 of those that are impossible.
+// kWeights weights of each path; -1 of those that are impossible.
 std::vector<float> weights_on(const std::string& backend, const Paths& all, int beta) {
     const auto device = create_device(backend, exact_options(backend));
     const auto kernel = device->compile("kernel/mis_probe.kernel.h", 0);
     const size_t count = all.paths.size();
-    const BufferHandle out = device->create_buffer(kStrategies * count * sizeof(float), "weights");
+    const BufferHandle out = device->create_buffer(kWeights * count * sizeof(float), "weights");
     const std::vector what{glm::uvec4(beta - 1, 0, 0, 0)};
     const NamedBuffer buffers[] = {{"what", upload(*device, what, "what")},
                                    {"paths", upload(*device, all.paths, "paths")},
                                    {"vertices", upload(*device, all.vertices, "vertices")},
                                    {"weights", out}};
     device->run(*kernel, nullptr, buffers, 0, uint32_t(count));
-    return download<float>(out, kStrategies * count);
+    return download<float>(out, kWeights * count);
 }
 
 TEST(Mis, RecursionGivesTheWeightsOfAllStrategies) {
@@ -259,8 +273,8 @@ TEST(Mis, RecursionGivesTheWeightsOfAllStrategies) {
             for (uint32_t i = 0; i < kPaths; ++i) {
                 const std::vector<double> right = Reference(random_paths(), i).weights(beta);
                 double sum = 0;
-                for (uint32_t s = 0; s < kStrategies; ++s) {
-                    const double weight = found[kStrategies * i + s];
+                for (uint32_t s = 0; s < kWeights; ++s) {
+                    const double weight = found[kWeights * i + s];
                     ASSERT_EQ(weight < 0, right[s] < 0) << "path " << i << ", strategy " << s;
                     ASSERT_NEAR(weight, right[s], kTolerance) << "path " << i << ", strategy " << s;
                     if (weight > 0) sum += weight;
@@ -313,7 +327,8 @@ TEST(Mis, MistakesWouldBeSeen) {
                     {"distance to an orthographic camera", Mistake::kOrthographicDistance},
                     {"no number of light paths", Mistake::kNoLensSamples},
                     {"area density for next-event estimation", Mistake::kAreaDensityOfLight},
-                    {"one connection for each strategy", Mistake::kOneConnection}};
+                    {"one connection for each strategy", Mistake::kOneConnection},
+                    {"merging with a tenth of the light paths", Mistake::kFewMerged}};
     for (int beta = 1; beta <= 2; ++beta) {
         const std::vector<float> found = weights_on("cpu", random_paths(), beta);
         for (const auto& m : mistakes) {
@@ -322,8 +337,8 @@ TEST(Mis, MistakesWouldBeSeen) {
             for (uint32_t i = 0; i < kPaths; ++i) {
                 const std::vector<double> wrong = Reference(random_paths(), i, m.mistake).weights(beta);
                 double worst = 0;
-                for (uint32_t s = 0; s < kStrategies; ++s)
-                    worst = std::max(worst, std::abs(found[kStrategies * i + s] - wrong[s]));
+                for (uint32_t s = 0; s < kWeights; ++s)
+                    worst = std::max(worst, std::abs(found[kWeights * i + s] - wrong[s]));
                 if (worst > 100 * kTolerance) ++seen;
             }
             EXPECT_GT(seen, kPaths / 20);

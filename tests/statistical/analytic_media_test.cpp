@@ -33,6 +33,36 @@ TEST_P(AnalyticTest, MediaNestAroundTheCamera) {
         kBound);
 }
 
+// A lamp at z = 5 seen through air and two masks without a surface (alpha 0) in it: rays go on behind each, and the air
+// absorbs over the whole way.
+TEST_P(AnalyticTest, AirAbsorbsOnBothSidesOfMasks) {
+    scene_ = "masks in air";
+    RenderSettings settings;
+    settings.backend = GetParam();
+    settings.samples = 1;
+    settings.integrator = "path:maxdepth=1";
+    const std::string text = R"(
+LookAt 0 0 0  0 0 1  0 1 0
+MediumInterface "" "air"
+Camera "perspective" "float fov" 90
+PixelFilter "box" "float xradius" 0.0000001 "float yradius" 0.0000001
+Film "rgb" "integer xresolution" 8 "integer yresolution" 8
+WorldBegin
+MakeNamedMedium "air" "string type" "homogeneous" "rgb sigma_a" [ 0.05 0.1 0.2 ] "rgb sigma_s" [ 0 0 0 ]
+MediumInterface "" ""
+Material "diffuse" "rgb reflectance" [ 0 0 0 ]
+Shape "disk" "float radius" 10 "float height" 1 "float alpha" 0
+Shape "disk" "float radius" 10 "float height" 3 "float alpha" 0
+AreaLightSource "diffuse" "rgb L" [ 1 1 1 ] "bool twosided" true
+Shape "disk" "float radius" 10 "float height" 5
+)";
+    last_ = render_text(text, settings);
+    const Sigma air{0.05, 0.1, 0.2};
+    expect_exact(
+        [&](double x, double y, int c) { return std::exp(-5.0 * air[size_t(c)] * obliqueness(x, y, last_.width)); },
+        kBound);
+}
+
 // The distance from the axis of a pixel of the orthographic scenes.
 double from_axis(double x, double y, double width) { return std::hypot(2.0 * x / width - 1.0, 2.0 * y / width - 1.0); }
 

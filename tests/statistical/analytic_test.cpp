@@ -78,6 +78,30 @@ TEST_P(AnalyticTest, LosslessDiffuseMaterialsAreInvisibleInAFurnace) {
     expect_mean(constant(1.0), 0.02);
 }
 
+// A lamp of 1 behind a black mask that stops 3/4 of the rays. If the mask stopped 2 % fewer, that would be found.
+TEST_P(AnalyticTest, MasksStopTheirShareOfRays) {
+    scene_ = "mask";
+    RenderSettings settings;
+    settings.backend = GetParam();
+    settings.samples = 128;
+    settings.sampler = "independent";
+    settings.integrator = "path:maxdepth=0";
+    last_ = render_text(R"(
+Camera "orthographic"
+PixelFilter "box"
+Film "rgb" "integer xresolution" 32 "integer yresolution" 32
+WorldBegin
+AttributeBegin
+Material "diffuse" "rgb reflectance" [ 0 0 0 ]
+Shape "disk" "float radius" 2 "float height" 1 "float alpha" 0.75
+AttributeEnd
+AreaLightSource "diffuse" "rgb L" [ 1 1 1 ] "bool twosided" true
+Shape "disk" "float radius" 2 "float height" 2
+)",
+                        settings);
+    expect_mean(constant(0.25), 0.06);
+}
+
 // ---- Irradiance --------------------------------------------------------------------------------------------------------
 
 double polygon_irradiance(const std::vector<glm::dvec3>& corners, glm::dvec3 p) {

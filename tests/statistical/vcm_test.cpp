@@ -54,6 +54,18 @@ TEST(Merging, FindsWhatNoConnectionDoes) {
     }
 }
 
+// A unit sphere of albedo 1/2 around a point light of intensity pi: paths with k scattering vertices show 1/2^k. Merging alone
+// finds all of up to maxdepth vertices. A ball about a point of the sphere cuts out a cap of area pi r^2 exactly.
+TEST(Merging, FindsPathsOfEveryLength) {
+    for (const int depth : {1, 3}) {
+        SCOPED_TRACE(depth);
+        const std::string integrator = fmt::format("bpm:maxdepth={},radius=0.05,lightpaths=20000", depth);
+        const Mean mean = mean_of_runs("analytic/sphere-point.pbrt", settings_of("cpu", integrator, 4, 16), 8);
+        expect_mean(mean, 1.0 - std::ldexp(1.0, -depth), 1e-4);
+        EXPECT_LT(mean.error(), 0.01);
+    }
+}
+
 // In a closed box all methods show the same; bpm's disks reach beyond corners, where it shows less (the share of the walls within
 // a radius of an edge is 3 r / 2, and a disk there is half outside at most).
 TEST_P(Merging, EveryPhotonMapAgrees) {
