@@ -213,6 +213,21 @@ TEST_F(ImageIo, ExrsThatAreNoPicturesAreRefused) {
     write_bytes("large.exr", bytes);
     EXPECT_NE(message_of([&] { read_image(path("large.exr")); }, ExitCode::kBadInput).find("header is damaged"),
               std::string::npos);
+    // One of negative length, after which a reader would go back for ever.
+    const std::string loops = bytes.substr(0, 8) + std::string("a\0string\0\xf3\xff\xff\xff", 13) + bytes.substr(8);
+    write_bytes("loops.exr", loops);
+    EXPECT_NE(message_of([&] { read_image(path("loops.exr")); }, ExitCode::kBadInput).find("is said to have -13 bytes"),
+              std::string::npos);
+    // Channels without end, which take OpenEXR seconds.
+    std::vector<std::string> names;
+    for (int c = 0; c < 8193; ++c) names.push_back("c" + std::to_string(c));
+    write_image(path("channels.exr"), Image(1, 1, names));
+    EXPECT_NE(
+        message_of([&] { read_image(path("channels.exr")); }, ExitCode::kBadInput).find("more than 8192 channels"),
+        std::string::npos);
+    write_image(path("chroma.exr"), Image(2, 2, {"Y", "RY", "BY"}));
+    EXPECT_NE(message_of([&] { read_image(path("chroma.exr")); }, ExitCode::kBadInput).find("luminance and chroma"),
+              std::string::npos);
     // And a chunk of a PNG, of which libpng does.
     write_bytes("large.png",
                 std::string("\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\0\0\0\1\0\0\0\1\x8\2\0\0\0\x90\x77\x53\xde", 33) +

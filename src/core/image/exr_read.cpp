@@ -67,6 +67,8 @@ Image read_first_part(Imf::MultiPartInputFile& file, const std::string& path, ui
     if (header.hasType() && Imf::isDeepData(header.type()))
         throw InputError("it is a deep image, which has no single value per pixel");
     const Imf::ChannelList& channels = header.channels();
+    if (channels.findChannel("RY") && channels.findChannel("BY"))
+        throw InputError("it holds luminance and chroma (Y, RY, BY), which are not converted to R, G, B");
     std::vector<std::string> names;
     for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
         if (channel.channel().xSampling != 1 || channel.channel().ySampling != 1)
