@@ -6,7 +6,8 @@ import subprocess
 
 import pytest
 
-TARGETS = ("parse", "ply", "scene", "checkpoint", "cache", "options", "image")
+TARGETS = ("parse", "ply", "scene", "checkpoint", "cache", "options")
+ALL_TARGETS = (*TARGETS, "image")  # most of what reads images is in libraries, whose faults come by chance
 # OpenImageIO leaks the texts of errors.
 ENVIRONMENT = {"image": {**os.environ, "ASAN_OPTIONS": "detect_leaks=0"}}
 SECONDS = int(os.environ.get("LAMPYRIS_FUZZ_SECONDS", "14"))
@@ -48,14 +49,14 @@ def test_finds_nothing(fuzz_build, source_dir, tmp_path, target):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("target", TARGETS)
+@pytest.mark.parametrize("target", ALL_TARGETS)
 def test_finds_nothing_in_minutes(fuzz_build, source_dir, tmp_path, target):
     fuzz(fuzz_build, source_dir, tmp_path, target, LONG_SECONDS)
 
 
 def test_the_seeds_are_read(fuzz_build, source_dir):
     """The corpus is read without a finding, and is not empty, or else the fuzzer would start from nothing."""
-    for target in TARGETS:
+    for target in ALL_TARGETS:
         seeds = sorted((source_dir / "tests/fuzz/corpus" / target).iterdir())
         assert len(seeds) >= 5
         command = [fuzz_build / f"{target}_fuzz", f"-artifact_prefix={fuzz_build}/", *seeds]
