@@ -13,7 +13,7 @@ void check_plausible(const std::string& path, int64_t width, int64_t height, int
                      uint64_t max_memory) {
     // A header that promises far more than the file can hold is damaged or hostile; trusting it would exhaust memory. No format
     // here packs more than about 8000 to 1 (deflate's 1032, times eight for one-bit pixels).
-    constexpr double kFree = double(64 << 20), kMostPacked = 20000.0;
+    constexpr double kFree = double(2 << 20), kMostPacked = 20000.0;
     const double values = double(width) * double(height) * double(channels);
     const double promised = values * double(value_bytes);
     const uint64_t held = uint64_t(std::filesystem::file_size(path));
