@@ -125,8 +125,8 @@ Image read_exr(const std::string& path, uint64_t max_memory) {
         throw;
     } catch (const std::exception& error) {  // those of OpenEXR name the file
         std::string why = error.what();
-        if (const size_t at = why.find('"' + path + '"'); at != std::string::npos)
-            why.replace(at, path.size() + 2, "it");
+        for (const std::string& name : {"image file \"" + path + '"', '"' + path + '"'})
+            if (const size_t at = why.find(name); at != std::string::npos) why.replace(at, name.size(), "it");
         throw InputError(why.substr(0, why.find('\n')));
     }
 }
