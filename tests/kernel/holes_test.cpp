@@ -1,5 +1,5 @@
-// How closed closed meshes are: docs/numerics.md has the shares of rays that escape, which are not 0 yet. Bounds are four times
-// what was measured. holes_long_test has more rays.
+// Closed meshes have no holes. Embree finds a triangle for every ray that meets an edge, but for some that meet a vertex to the last
+// bit it does not; docs/numerics.md has their share. holes_long_test has more rays.
 #include "support/closed_mesh.h"
 #include "support/render.h"
 
@@ -13,15 +13,18 @@ namespace {
 
 class Holes : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
 
-TEST_P(Holes, AreRare) {
+TEST_P(Holes, AreNotThere) {
     const auto& [mesh, backend] = GetParam();
-    const Escaped random = escaped_rays(mesh, backend, 1 << 19, false);
-    EXPECT_LE(random.closest, 4u);
-    EXPECT_LE(random.occlusion, 4u);
-    constexpr uint64_t kAimed = 1 << 17;
-    const Escaped aimed = escaped_rays(mesh, backend, kAimed, true);
-    EXPECT_LT(aimed.closest, kAimed / 8);
-    EXPECT_LT(aimed.occlusion, kAimed / 8);
+    constexpr uint64_t kRays = 1 << 18;
+    for (const Aim aim : {Aim::kNowhere, Aim::kEdges, Aim::kVertices}) {
+        const uint64_t most = backend == "cpu" && aim == Aim::kVertices ? kRays / 200 : 0;
+        const Escaped escaped = escaped_rays(mesh, backend, kRays, aim);
+        EXPECT_LE(escaped.closest, most) << int(aim);
+        EXPECT_LE(escaped.occlusion, most) << int(aim);
+        std::printf("%s on %s, aim %d: %lu and %lu of %lu\n", mesh.c_str(), backend.c_str(), int(aim),
+                    static_cast<unsigned long>(escaped.closest), static_cast<unsigned long>(escaped.occlusion),
+                    static_cast<unsigned long>(kRays));
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, Holes,

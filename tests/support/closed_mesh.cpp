@@ -112,7 +112,7 @@ struct Ray {
     vec4 origin, direction;  // w of the origin: the farthest distance
 };
 
-Ray random_ray(const Mesh& mesh, bool aimed, Engine& engine) {
+Ray random_ray(const Mesh& mesh, Aim aim, Engine& engine) {
     constexpr float kFar = 3e38f, kInside = 0.12f;  // all meshes hold a cube of this half side
     const auto point = [&](float half) {
         const float x = uniform(engine, -half, half), y = uniform(engine, -half, half);
@@ -121,8 +121,9 @@ Ray random_ray(const Mesh& mesh, bool aimed, Engine& engine) {
     const vec3 origin = point(kInside);
     const uvec3& t = mesh.triangles[engine() % mesh.triangles.size()];
     const vec3 a = mesh.points[t.x], b = mesh.points[t.y];
-    const std::array<vec3, 3> targets{point(1), a, a + uniform(engine, 0, 1) * (b - a)};
-    const vec3 direction = targets[aimed ? engine() % 3 : 0] - origin;
+    const vec3 target =
+        aim == Aim::kNowhere ? point(1) : (aim == Aim::kEdges ? a + uniform(engine, 0, 1) * (b - a) : a);
+    const vec3 direction = target - origin;
     return {vec4(origin, kFar), vec4(direction / glm::length(direction), 0)};
 }
 
@@ -130,7 +131,7 @@ Ray random_ray(const Mesh& mesh, bool aimed, Engine& engine) {
 
 std::vector<std::string> closed_meshes() { return {"ball", "cube", "drum"}; }
 
-Escaped escaped_rays(const std::string& mesh_name, const std::string& backend, uint64_t rays, bool aimed) {
+Escaped escaped_rays(const std::string& mesh_name, const std::string& backend, uint64_t rays, Aim aim) {
     const Mesh mesh = mesh_of(mesh_name);
     const BuiltText built = scene_of(mesh);
     if (!built.errors.empty()) throw std::runtime_error(built.all_errors());
@@ -146,7 +147,7 @@ Escaped escaped_rays(const std::string& mesh_name, const std::string& backend, u
     Engine engine(2);
     Escaped escaped;
     for (uint64_t done = 0; done < rays; done += block) {
-        for (Ray& ray : inputs) ray = random_ray(mesh, aimed, engine);
+        for (Ray& ray : inputs) ray = random_ray(mesh, aim, engine);
         in->upload(inputs.data(), in->size());
         const NamedBuffer buffers[] = {{"rays", in}, {"hits", out}};
         device->run(*kernel, on_device.get(), buffers, 0, uint32_t(block));

@@ -37,7 +37,7 @@ __m128 load3(const float v[3]) {
 
 }  // namespace
 
-EmbreeScene::EmbreeScene(const Scene& scene, void* const* scene_buffers)
+EmbreeScene::EmbreeScene(const Scene& scene, void* const* scene_buffers, bool watertight)
     : scene_(scene),
       scene_buffers_(scene_buffers),
       largest_ray_(kLargestRay),
@@ -47,14 +47,12 @@ EmbreeScene::EmbreeScene(const Scene& scene, void* const* scene_buffers)
 
     set_scenes_.resize(scene.sets.size());
     for (uint32_t set = 1; set < scene.sets.size(); ++set) {
-        set_scenes_[set] = EmbreeSceneHandle(rtcNewScene(device_.get()));
-        rtcSetSceneBuildQuality(set_scenes_[set].get(), RTC_BUILD_QUALITY_HIGH);
+        set_scenes_[set] = new_scene(watertight);
         attach_geometries(set_scenes_[set].get(), set);
         rtcCommitScene(set_scenes_[set].get());
         check(device_.get(), "building an object's acceleration structure");
     }
-    top_ = EmbreeSceneHandle(rtcNewScene(device_.get()));
-    rtcSetSceneBuildQuality(top_.get(), RTC_BUILD_QUALITY_HIGH);
+    top_ = new_scene(watertight);
     attach_geometries(top_.get(), 0);
     const uint32_t first_instance = uint32_t(scene.geometries.size());
     for (uint32_t i = 1; i < scene.instances.size(); ++i) {
@@ -75,13 +73,21 @@ EmbreeScene::EmbreeScene(const Scene& scene, void* const* scene_buffers)
     check(device_.get(), "building the acceleration structure");
 }
 
+EmbreeSceneHandle EmbreeScene::new_scene(bool watertight) const {
+    EmbreeSceneHandle scene(rtcNewScene(device_.get()));
+    rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
+    if (watertight) rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+    return scene;
+}
+
 CpuTracer EmbreeScene::tracer() { return {this, &EmbreeScene::closest, &EmbreeScene::occluded}; }
 
 // False for rays that hit nothing, as in the other tracers. Such a ray comes from values that are not finite, and those are
 // reported as a bad sample. Embree's records begin with the origin and tnear, then the direction and time.
 bool EmbreeScene::make_ray(const float origin[3], const float direction[3], float t_max, RTCRay& ray) const {
     const __m128 o = load3(origin), d = load3(direction), limit = _mm_set1_ps(largest_ray_);
-    _mm_store_ps(&ray.org_x, o);
+    // Some of Embree's triangle tests let hits at tnear count, others do not: hits at 0 must not.
+    _mm_store_ps(&ray.org_x, _mm_or_ps(o, _mm_setr_ps(0.0f, 0.0f, 0.0f, std::numeric_limits<float>::min())));
     _mm_store_ps(&ray.dir_x, d);
     ray.tfar = t_max, ray.mask = ~0u, ray.id = 0, ray.flags = 0;
     const __m128 sign = _mm_set1_ps(-0.0f);

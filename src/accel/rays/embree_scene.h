@@ -36,11 +36,11 @@ using EmbreeDevice = EmbreeObject<RTCDevice, rtcReleaseDevice>;
 using EmbreeSceneHandle = EmbreeObject<RTCScene, rtcReleaseScene>;
 using EmbreeGeometry = EmbreeObject<RTCGeometry, rtcReleaseGeometry>;
 
-// Shares the scene's vertex and index arrays (nothing is copied): the scene must outlive this.
-// Throws MachineError where Embree has no memory.
+// Shares the scene's vertex and index arrays (nothing is copied): the scene must outlive this. `watertight` makes Embree find
+// triangles whose edge a ray meets (RTC_SCENE_FLAG_ROBUST). Throws MachineError where Embree has no memory.
 class EmbreeScene {
  public:
-    EmbreeScene(const Scene& scene, void* const* scene_buffers);
+    EmbreeScene(const Scene& scene, void* const* scene_buffers, bool watertight);
     EmbreeScene(const EmbreeScene&) = delete;
     EmbreeScene& operator=(const EmbreeScene&) = delete;
     CpuTracer tracer();
@@ -48,6 +48,7 @@ class EmbreeScene {
     RTCScene top_scene() const { return top_.get(); }
 
  private:
+    EmbreeSceneHandle new_scene(bool watertight) const;
     struct UserGeometry {
         const EmbreeScene* owner;
         uint32_t geometry;

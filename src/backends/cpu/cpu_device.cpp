@@ -99,7 +99,12 @@ class CpuDevice final : public Device {
  public:
     CpuDevice(CpuTracerKind tracer, const DeviceOptions& options)
         : tracer_(tracer), meter_(std::make_shared<MemoryMeter>()) {
-        check_settings(backend(), options, {});
+        if (tracer == CpuTracerKind::embree) {
+            check_settings(backend(), options, {"watertight"});
+            watertight_ = read_switch(options, "watertight", Switch::on) != Switch::off;
+        } else {
+            check_settings(backend(), options, {});
+        }
         meter_->limit = options.max_memory;
         const std::string name = description();
         choose_device(std::span(&name, 1), options.device, std::string("the backend ") + backend());
@@ -123,7 +128,7 @@ class CpuDevice final : public Device {
     DeviceSceneHandle upload(const Scene& scene) override {
         const auto start = Clock::now();
         std::shared_ptr<CpuScene> result;
-        arena_.execute([&] { result = std::make_shared<CpuScene>(scene, tracer_); });
+        arena_.execute([&] { result = std::make_shared<CpuScene>(scene, tracer_, watertight_); });
         statistics_.build_s += seconds_since(start);
         meter_->add(result->memory_bytes(), "the scene's acceleration structure");
         return result;
@@ -185,6 +190,7 @@ class CpuDevice final : public Device {
 
  private:
     CpuTracerKind tracer_;
+    bool watertight_ = true;
     std::shared_ptr<MemoryMeter> meter_;
     unsigned threads_ = 1;
     std::optional<oneapi::tbb::global_control> more_threads_;

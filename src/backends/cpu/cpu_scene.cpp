@@ -6,7 +6,7 @@
 
 namespace lampyris {
 
-CpuScene::CpuScene(const Scene& scene, CpuTracerKind tracer) {
+CpuScene::CpuScene(const Scene& scene, CpuTracerKind tracer, bool watertight) {
     if (tracer == CpuTracerKind::bvh2) {
         bvh_ = std::make_unique<Bvh2Scene>(scene);
         bind(bvh_->buffers());
@@ -16,7 +16,7 @@ CpuScene::CpuScene(const Scene& scene, CpuTracerKind tracer) {
         return;
     }
     bind(scene_buffers(scene));
-    embree_ = std::make_unique<EmbreeScene>(scene, buffers_.data());
+    embree_ = std::make_unique<EmbreeScene>(scene, buffers_.data(), watertight);
     tracer_ = embree_->tracer();
     memory_ = embree_->memory_bytes();
 }

@@ -21,7 +21,7 @@ enum class CpuTracerKind { embree, bvh2 };
 class CpuScene final : public DeviceScene {
  public:
     static constexpr size_t kBufferCount = kernel::SCENE_BINDINGS;
-    CpuScene(const Scene& scene, CpuTracerKind tracer);
+    CpuScene(const Scene& scene, CpuTracerKind tracer, bool watertight);
     ~CpuScene() override;
     void set_camera(const kernel::CameraRecord& camera) override { record_.camera = camera; }
     void* const* buffers() const { return buffers_.data(); }

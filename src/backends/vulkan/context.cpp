@@ -194,15 +194,6 @@ size_t choose(const std::vector<vk::raii::PhysicalDevice>& devices, const std::s
 
 }  // namespace
 
-Switch read_switch(const DeviceOptions& options, const std::string& key, Switch otherwise) {
-    const auto found = options.settings.find(key);
-    if (found == options.settings.end()) return otherwise;
-    if (found->second == "on" || found->second == "true") return Switch::on;
-    if (found->second == "off" || found->second == "false") return Switch::off;
-    if (found->second == "auto") return Switch::automatic;
-    throw InputError(fmt::format("error: --set backend.{}={}: valid are on, off and auto", key, found->second));
-}
-
 std::string explain(const vk::Error& error, const std::string& doing) {
     const auto* system = dynamic_cast<const vk::SystemError*>(&error);
     const auto code = system ? static_cast<vk::Result>(system->code().value()) : vk::Result::eErrorUnknown;

@@ -11,10 +11,6 @@
 
 namespace lampyris::vulkan {
 
-// An on/off/auto setting of `--set backend.KEY=VALUE`; throws InputError for anything else.
-enum class Switch { off, on, automatic };
-Switch read_switch(const DeviceOptions& options, const std::string& key, Switch otherwise);
-
 // The chosen device's capabilities, as far as Lampyris uses them.
 struct Capabilities {
     bool is_cpu = false, is_integrated = false;

@@ -78,6 +78,15 @@ void check_settings(const std::string& backend, const DeviceOptions& options, co
                                          known.empty() ? "it has none" : "settings are " + list_of(known)));
 }
 
+Switch read_switch(const DeviceOptions& options, const std::string& key, Switch otherwise) {
+    const auto found = options.settings.find(key);
+    if (found == options.settings.end()) return otherwise;
+    if (found->second == "on" || found->second == "true") return Switch::on;
+    if (found->second == "off" || found->second == "false") return Switch::off;
+    if (found->second == "auto") return Switch::automatic;
+    throw InputError(fmt::format("error: --set backend.{}={}: valid are on, off and auto", key, found->second));
+}
+
 std::unique_ptr<Device> create_device(const std::string& backend, const DeviceOptions& options) {
     const auto found = backends().find(backend);
     if (found == backends().end())

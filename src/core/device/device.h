@@ -171,6 +171,10 @@ struct BackendRegistration {
 // For backends: throws InputError for a setting that is not in `known`.
 void check_settings(const std::string& backend, const DeviceOptions& options, const std::vector<std::string>& known);
 
+// An on/off/auto setting of `--set backend.KEY=VALUE`; throws InputError for anything else.
+enum class Switch { off, on, automatic };
+Switch read_switch(const DeviceOptions& options, const std::string& key, Switch otherwise);
+
 // Throws InputError for an unknown backend (with the list), MachineError if the backend has no device.
 std::unique_ptr<Device> create_device(const std::string& backend, const DeviceOptions& options = {});
 std::vector<std::string> backend_names();

@@ -41,11 +41,15 @@ FN void triangle_surface(uint geometry, uint primitive, vec3 o, vec3 d, INOUT(Su
     vec3 r = cross3(from, side1);
     float inverse = det != 0.0f ? 1.0f / det : 0.0f;
     // Clamped, because rounding may put the point just outside of the triangle.
-    float b1 = clamp(dot3(from, q) * inverse, 0.0f, 1.0f);
-    float b2 = clamp(dot3(d, r) * inverse, 0.0f, 1.0f - b1);
+    float u = dot3(from, q) * inverse;
+    float v = dot3(d, r) * inverse;
+    float b1 = clamp(u, 0.0f, 1.0f);
+    float b2 = clamp(v, 0.0f, 1.0f - b1);
     float b0 = 1.0f - b1 - b2;
     s.distance = dot3(from, n) * inverse * unscale;
     s.position = b0 * p0 + b1 * p1 + b2 * p2;
+    // On a triangle that is seen edge-on, the plane tells nothing about the distance.
+    if (RARELY(b1 != u || b2 != v || det == 0.0f)) s.distance = max(dot3(s.position - o, d) / length_squared(d), 0.0f);
     s.error = gamma_bound(7.0f) * (abs(b0 * p0) + abs(b1 * p1) + abs(b2 * p2));
     s.ng = -unit(d);
     if (n_length > 0.0f) {

@@ -14,7 +14,7 @@ FN float bvh_inverse(float x) { return abs(x) > 1e-20f ? 1.0f / x : copy_sign(1e
 FN bool bvh_is_finite(vec3 o, vec3 d) { return is_finite(o.x + o.y + o.z + d.x + d.y + d.z); }
 
 // The distance at which a ray enters a box, or INFINITE_DISTANCE if it does not within [0, t_max]. Boxes are widened by
-// the rounding of the slab distances (Ize 2013, "Robust BVH Ray Traversal"). The direction's signs tell near planes
+// the rounding of the slab distances (Ize 2013, "Robust BVH Ray Traversal") and by that of bvh_corner. The direction's signs tell near planes
 // from far ones. Distances are compared as integers: bits of floats that are not negative have the floats' order. A
 // negative near distance loses against 0, and a negative far distance makes the box a miss. GLSL's min and max of
 // floats must handle NaN, which takes three instructions each on a CPU.
@@ -32,24 +32,70 @@ FN float bvh_enter(IN(VecPair) box, vec3 o, vec3 inverse, float t_max) {
     int far_bits =
         min(min(floatBitsToInt(far_x), floatBitsToInt(far_y)), min(floatBitsToInt(far_z), floatBitsToInt(t_max)));
     float near = intBitsToFloat(near_bits);
-    return near <= intBitsToFloat(far_bits) * 1.0000004f ? near : INFINITE_DISTANCE;
+    return near <= intBitsToFloat(far_bits) * 1.000001f ? near : INFINITE_DISTANCE;
 }
 
-// Moeller and Trumbore 1997, written with the unnormalised normal, from which shared code recomputes the distance. True
-// if 0 < t < t_max.
-FN bool bvh_triangle(vec3 v0, vec3 v1, vec3 v2, vec3 o, vec3 d, float t_max, OUT(float) t) {
-    vec3 e1 = v1 - v0;
-    vec3 e2 = v2 - v0;
-    vec3 n = cross3(e1, e2);
-    vec3 c = v0 - o;
-    vec3 r = cross3(c, d);
-    float det = dot3(d, n);
-    float s = det < 0.0f ? -1.0f : 1.0f;
-    float u = dot3(e2, r) * s;
-    float v = -dot3(e1, r) * s;
+// Coordinates in which rays that start at the origin run along the third axis (Woop, Benthin and Wald 2013, "Watertight
+// Ray/Triangle Intersection"): the axis of the direction's largest component comes third, the first two are sheared along it,
+// and the third is in units of the direction's length.
+struct BvhShear {
+    uint axis;
+    vec3 by;
+};
+
+FN vec3 bvh_axis_last(vec3 v, uint axis) {
+    return axis == 0u ? vec3(v.y, v.z, v.x) : (axis == 1u ? vec3(v.z, v.x, v.y) : v);
+}
+
+FN BvhShear bvh_shear(vec3 d) {
+    BvhShear shear;
+    vec3 size = abs(d);
+    shear.axis = size.z > max(size.x, size.y) ? 2u : (size.y > size.x ? 1u : 0u);
+    vec3 turned = bvh_axis_last(d, shear.axis);
+    float inverse = bvh_inverse(turned.z);
+    shear.by = vec3(turned.x * inverse, turned.y * inverse, inverse);
+    return shear;
+}
+
+// All triangles with a corner at p compute the same numbers for it.
+FN vec3 bvh_corner(vec3 p, vec3 o, IN(BvhShear) shear) {
+    vec3 from_o = bvh_axis_last(p - o, shear.axis);
+    return vec3(from_o.x - shear.by.x * from_o.z, from_o.y - shear.by.y * from_o.z, shear.by.z * from_o.z);
+}
+
+// On which side of the edge from a to b the ray passes. The products are rounded before they are subtracted, so that the
+// sign is right or 0, and the opposite one for the edge from b to a.
+FN float bvh_side(vec3 a, vec3 b) { return a.x * b.y - a.y * b.x; }
+
+// A triangle is seen edge-on if terms of d.n cancel but for this share: t is then not known from the plane.
+CONST float BVH_EDGE_ON = 2.44140625e-4f;
+
+// True if the ray hits the triangle with 0 < t < t_max. Watertight: a ray that meets an edge or a corner exactly, as far as
+// floats tell, hits all triangles there, so that none passes between neighbours. (The paper computes such sides again, in
+// double precision.)
+//
+// t is that of the plane: a ray that starts on a plane along two axes must not hit it. Of a triangle that is seen edge-on, t is
+// a mean of its corners'.
+FN bool bvh_triangle(vec3 v0, vec3 v1, vec3 v2, vec3 o, vec3 d, IN(BvhShear) shear, float t_max, OUT(float) t) {
+    vec3 a = bvh_corner(v0, o, shear);
+    vec3 b = bvh_corner(v1, o, shear);
+    vec3 c = bvh_corner(v2, o, shear);
+    float u = bvh_side(b, c);
+    float v = bvh_side(c, a);
+    float w = bvh_side(a, b);
+    float sum = u + v + w;
     t = 0.0f;
-    if (u < 0.0f || v < 0.0f || u + v > abs(det) || det == 0.0f) return false;
-    t = dot3(c, n) / det;
+    if ((min(min(u, v), w) < 0.0f && max(max(u, v), w) > 0.0f) || sum == 0.0f) return false;
+    vec3 n = cross3(v1 - v0, v2 - v0);
+    float det = dot3(d, n);
+    float terms = dot3(abs(d), abs(n));
+    if (!(terms > 0.0f)) return false;  // no area, but for rounding
+    if (abs(det) > BVH_EDGE_ON * terms) {
+        t = dot3(v0 - o, n) / det;
+    } else {
+        float scale = 1.0f / sum;
+        t = u * scale * a.z + v * scale * b.z + w * scale * c.z;
+    }
     return t > 0.0f && t < t_max;
 }
 
@@ -64,6 +110,7 @@ FN bool bvh_walk(vec3 origin, vec3 direction, float t_max, bool any_hit, OUT(Hit
     vec3 o = origin;
     vec3 d = direction;
     vec3 inverse = vec3(bvh_inverse(d.x), bvh_inverse(d.y), bvh_inverse(d.z));
+    BvhShear shear = bvh_shear(d);
     float t_best = t_max;
     uint best = NONE;
     uint best_instance = 0u;
@@ -100,6 +147,7 @@ FN bool bvh_walk(vec3 origin, vec3 direction, float t_max, bool any_hit, OUT(Hit
             o = origin;
             d = direction;
             inverse = vec3(bvh_inverse(d.x), bvh_inverse(d.y), bvh_inverse(d.z));
+            shear = bvh_shear(d);
             depth -= 1u;
             node = stack[depth];
         } else if (HAS(EFFECT_INSTANCES) && (node & 0x7f000000u) == 0u) {
@@ -112,6 +160,7 @@ FN bool bvh_walk(vec3 origin, vec3 direction, float t_max, bool any_hit, OUT(Hit
             d = transform_vector(instances[instance].transform.from0, instances[instance].transform.from1,
                                  instances[instance].transform.from2, direction);
             inverse = vec3(bvh_inverse(d.x), bvh_inverse(d.y), bvh_inverse(d.z));
+            shear = bvh_shear(d);
             node = bvh_is_finite(o, d) ? instances[instance].root_node : BVH_LEAVE_INSTANCE;
         } else {
             uint first = node & 0x00ffffffu;
@@ -124,7 +173,7 @@ FN bool bvh_walk(vec3 origin, vec3 direction, float t_max, bool any_hit, OUT(Hit
                 float t = 0.0f;
                 bool found = false;
                 if (kind == BVH_TRIANGLE) {
-                    found = bvh_triangle(vec3(v0), vec3(v1), vec3(v2), o, d, t_best, t);
+                    found = bvh_triangle(vec3(v0), vec3(v1), vec3(v2), o, d, shear, t_best, t);
                 } else if (HAS(EFFECT_QUADRICS) && kind == BVH_QUADRIC) {
                     found = quadric_hit(floatBitsToUint(v0.w), o, d, t_best, t);
                 } else if (HAS(EFFECT_BILINEAR)) {
