@@ -1,5 +1,5 @@
-// Hard cases with known radiance, by every integrator on the CPU; on its other backends by the first one of each case, since what is
-// theirs is the tracing of rays (hard_cases_long_test has the others there).
+// Hard cases with known radiance, by every integrator on the CPU; on the other backends by the first one of those cases that are hard
+// for rays (hard_cases_long_test has the others there).
 #include "support/hard_cases.h"
 
 #include <gtest/gtest.h>
@@ -16,9 +16,11 @@ TEST_P(HardCaseTest, HasItsRadianceOnTheCpu) {
     for (const std::string& integrator : hard().integrators) expect_case(hard(), integrator, "cpu");
 }
 
-TEST_P(HardCaseTest, HasItsRadianceWithTheOtherTracer) { expect_case(hard(), hard().integrators[0], "cpu-bvh2"); }
+class HardRayTest : public HardCaseTest {};
 
-TEST_P(HardCaseTest, HasItsRadianceOnVulkan) { expect_case(hard(), hard().integrators[0], "vulkan"); }
+TEST_P(HardRayTest, HasItsRadianceWithTheOtherTracer) { expect_case(hard(), hard().integrators[0], "cpu-bvh2"); }
+
+TEST_P(HardRayTest, HasItsRadianceOnVulkan) { expect_case(hard(), hard().integrators[0], "vulkan"); }
 
 std::string name_of(const testing::TestParamInfo<size_t>& info) {
     std::string name;
@@ -26,7 +28,15 @@ std::string name_of(const testing::TestParamInfo<size_t>& info) {
     return name;
 }
 
+std::vector<size_t> everywhere() {
+    std::vector<size_t> chosen;
+    for (size_t i = 0; i < hard_cases().size(); ++i)
+        if (hard_cases()[i].everywhere) chosen.push_back(i);
+    return chosen;
+}
+
 INSTANTIATE_TEST_SUITE_P(Cases, HardCaseTest, testing::Range(size_t(0), hard_cases().size()), name_of);
+INSTANTIATE_TEST_SUITE_P(Cases, HardRayTest, testing::ValuesIn(everywhere()), name_of);
 
 }  // namespace
 }  // namespace lampyris::test

@@ -1,5 +1,7 @@
 #include "support/hard_cases.h"
 
+#include "core/image/image_io.h"
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -50,6 +52,26 @@ std::string lamp(double radius, double height, double radiance) {
         "AttributeBegin AreaLightSource \"diffuse\" \"rgb L\" [ {2:.9g} {2:.9g} {2:.9g} ]\nTranslate 0 {1:.9g} 0 Shape "
         "\"sphere\" \"float radius\" {0:.9g} AttributeEnd\n",
         radius, height, radiance);
+}
+
+// A sky of 1 whose four texels around the zenith (y) have the given radiance; size x size texels.
+std::string bright_zenith(double radiance, int size) {
+    Image sky(size, size, {"R", "G", "B"});
+    std::fill(sky.pixels.begin(), sky.pixels.end(), 1.0f);
+    for (int y = size / 2 - 1; y <= size / 2; ++y)
+        for (int x = size / 2 - 1; x <= size / 2; ++x)
+            for (int c = 0; c < 3; ++c) sky.at(x, y, c) = float(radiance);
+    const std::string file = LAMPYRIS_BINARY_DIR "/bright_zenith.exr";
+    write_image(file, sky);
+    return "AttributeBegin Rotate -90 1 0 0 LightSource \"infinite\" \"string filename\" \"" + file +
+           "\" AttributeEnd\n";
+}
+
+// On the equal-area octahedral square [-1, 1]^2, an area of 1 is a solid angle of pi, and the cosine to the pole at (u, v) is
+// 1 - (|u| + |v|)^2 (Clarberg 2008, "Fast Equal-Area Mapping of the (Hemi)Sphere using SIMD"). Integrated over [-h, h]^2.
+double bright_zenith_irradiance(double radiance, int size) {
+    const double h = 2.0 / size;
+    return kPi + kPi * (radiance - 1) * (4 * h * h - 14 * h * h * h * h / 3);
 }
 
 // The mean irradiance on the square [-half, half]^2 of a point source is its intensity times the square's solid angle over its
@@ -146,9 +168,9 @@ std::vector<HardCase> make_cases() {
     };
     const double mean = mean_irradiance(1, 1, 1);
     under("a lamp of 1e-5 of the floor", lamp(1e-5, 1, 1e10 / kPi), mean, 1e-4);
-    under("a lamp of 1e6 times the floor", lamp(1e6, 1e6 + 1, 1), kPi, 1e-3);
-    // sppm samples lights without regard to the BSDF, and so close to a sphere they are sampled by area: it finds the light rarely.
-    cases.back().integrators = {"path", "bdpt", "vcm", "mlt"};
+    for (const double height : {1.0, 100.0, 1e4})
+        under(fmt::format("a lamp of 1e6 times the floor, {} above", height), lamp(1e6, 1e6 + height, 1),
+              kPi / ((1 + 1e-6 * height) * (1 + 1e-6 * height)), 1e-3);
     under("a lamp of 1 mm in a scene of 1 km", lamp(5e-4, 1, 1 / (kPi * 25e-8)), mean, 1e-4, 1, 64, 500);
     // vcm's radius is a share of the scene's, and larger than what the camera sees.
     cases.back().integrators = {"path", "bdpt", "mlt", "sppm"};
@@ -157,6 +179,8 @@ std::vector<HardCase> make_cases() {
         const double half_angle = degrees / 2 * kPi / 180, sine = std::sin(half_angle);
         under(fmt::format("a sun of {} degrees", degrees), lamp(1000 * sine, 1000, 1 / (sine * sine)), kPi, 1e-4);
     }
+    // Four texels around the zenith; a texel has 4 pi / 32^2 of solid angle.
+    under("a map of the sky with texels of 1e9", bright_zenith(1e9, 32), bright_zenith_irradiance(1e9, 32), 1e-4);
     std::string many;
     for (int i = 0; i < 100000; ++i) many += point(1e-5, 1);
     under("100,000 lamps", many, mean, 1e-4);
@@ -170,13 +194,16 @@ std::vector<HardCase> make_cases() {
     std::string centres = view(1, 1);
     centres.replace(centres.find("0.5 \"float yradius\" 0.5"), 23, "1e-5 \"float yradius\" 1e-5");
     whole("rays through vertices", centres + sky(1) + diffuse(0.5) + grid(), 1e-5);
-    whole("a grazing angle of 2e-6",
-          "LookAt 0 2e-3 0  1000 0 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [ -1 1 -2e-4 2e-4 ]\n"
-          "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\nPixelFilter \"box\" \"float xradius\" 0.5 "
-          "\"float "
-          "yradius\" 0.5\nSampler \"independent\"\nWorldBegin\n" +
-              sky(1) + diffuse(0.5) + floor(2000),
-          1e-5);
+    for (const double angle : {2e-6, 1e-7, 2e-8})
+        whole(fmt::format("a grazing angle of {}", angle),
+              fmt::format(
+                  "LookAt 0 {} 0  1000 0 0  0 1 0\nCamera \"orthographic\" \"float screenwindow\" [ -1 1 -{} {} ]\n",
+                  1000 * angle, 100 * angle, 100 * angle) +
+                  "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\nPixelFilter \"box\" \"float "
+                  "xradius\" "
+                  "0.5 \"float yradius\" 0.5\nSampler \"independent\"\nWorldBegin\n" +
+                  sky(1) + diffuse(0.5) + floor(2000),
+              1e-5);
     for (const std::string pixels : {"1 1", "16384 1", "1 16384"}) {
         std::string film = view(0.7, 3, pixels);
         whole("a film of " + pixels, film + sky(1) + diffuse(0.5) + "Shape \"sphere\" \"float radius\" 1\n", 1e-5);
@@ -196,10 +223,20 @@ std::vector<HardCase> make_cases() {
         "\"disk\" "
         "\"float radius\" 1e-4 AttributeEnd\n";
     by_photons("all photons in one cell", fmt::format(fmt::runtime(disk), 1e-4, 90), kPi * kPi / 4, 0.01,
-               "radius=0.5,alpha=1,photonsperiteration=5000", 128);
+               "radius=0.5,alpha=1,photonsperiteration=5000", 32);
     cases.back().power = 0.15;
+    const HardCase one_cell = cases.back();
+    for (const std::string map : {"brute_force", "bvh", "cuckoo", "hash_list", "kd_tree", "linked_list", "sorted_grid",
+                                  "splat", "stochastic_hash", "uniform_grid"}) {
+        cases.push_back(one_cell);
+        cases.back().name += ", " + map;
+        cases.back().photon_map = map;
+    }
     by_photons("no photon at all", fmt::format(fmt::runtime(disk), 1e-4, -90), 0, 0,
                "radius=0.05,photonsperiteration=1000", 16);
+    for (HardCase& hard : cases)
+        for (const char* name : {"slabs", "total", "floor, 1 above", "1 mm", "needles", "vertices", "grazing", "film"})
+            hard.everywhere |= hard.name.find(name) != std::string::npos;
     return cases;
 }
 
@@ -215,6 +252,7 @@ Measured measure_case(const HardCase& hard, const std::string& integrator, const
     settings.backend = backend;
     settings.samples = hard.samples;
     settings.integrator = integrator + ":" + hard.settings;
+    if (!hard.photon_map.empty()) settings.photon_map = hard.photon_map;
     // A pass of mlt is eight mutations a pixel, and a bootstrap.
     if (integrator == "mlt") settings.samples = std::clamp(hard.samples / 2, 8u, 64u);
     // mlt has no roulette, and its paths one number per dimension.

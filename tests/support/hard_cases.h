@@ -18,7 +18,11 @@ struct HardCase {
     uint32_t samples = 16;
     std::string settings;  // of every integrator: "maxdepth=250"
     std::vector<std::string> integrators{"path", "bdpt", "vcm", "mlt", "sppm"};
-    double power = 0.05;  // an error of this share of the radiance is found
+    double power = 0.05;          // an error of this share of the radiance is found
+    std::string photon_map = {};  // the default one
+    // Hard for rays, or for code that differs between backends: by default tested on all of them. hard_cases_long_test has the
+    // others.
+    bool everywhere = false;
 };
 
 const std::vector<HardCase>& hard_cases();

@@ -89,9 +89,9 @@ FN BsdfSample no_bsdf_sample() {
     return s;
 }
 
-// Nothing is scattered from or into directions with a smaller cosine: a float does not represent such a direction any
-// better, and quotients by a cosine cannot overflow.
-CONST float MIN_COSINE = 1e-6f;
+// Nothing is scattered from or into directions with a smaller cosine: the rounding of a unit vector is larger, and
+// quotients by fourth powers of a cosine cannot overflow.
+CONST float MIN_COSINE = 1e-8f;
 
 FN bool is_grazing(vec3 w) { return !(abs(w.z) >= MIN_COSINE); }
 FN bool same_hemisphere(vec3 a, vec3 b) { return a.z * b.z > 0.0f; }

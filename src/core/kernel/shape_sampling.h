@@ -246,11 +246,13 @@ FN vec3 sample_quadric_point(uint kind, IN(Quadric) q, vec2 u) {
     return spherical_direction(r, z, u.y * q.phi_max);
 }
 
-// 1 - cos of the half angle of the cone that a whole sphere subtends from `ref_p` (quadric's space); 0 from inside.
-FN float sphere_cone(IN(Quadric) q, vec3 ref_p) {
+// 1 - cos of the half angle of the cone that a whole sphere subtends from `ref_p` (quadric's space); 0 from inside, and where
+// rounding hides on which side ref_p is. `m` is the quadric's transform.
+FN float sphere_cone(IN(Quadric) q, IN(TransformRecord) m, vec3 ref_p) {
     vec3 f = ref_p / q.radius;
     float d2 = length_squared(f);
-    if (!(d2 > 1.001f)) return 0.0f;
+    float moved = max(max(abs(m.from0.w), abs(m.from1.w)), abs(m.from2.w));
+    if (!(d2 - 1.0f > 4e-7f + 4e-7f * moved / q.radius)) return 0.0f;
     float sin2 = 1.0f / d2;
     return sin2 / (1.0f + sqrt(1.0f - sin2));
 }
@@ -289,7 +291,7 @@ FN bool sample_quadric_light(uint geometry, vec3 ref_p, vec2 u, OUT(ShapeSample)
     s.uv = vec2(0.0f);
     if (kind == GEOMETRY_SPHERE && sphere_is_whole(g.quadric) && sphere_hides_its_inside(g)) {
         vec3 o = transform_point(m.from0, m.from1, m.from2, ref_p);
-        float one_minus_cos_max = sphere_cone(g.quadric, o);
+        float one_minus_cos_max = sphere_cone(g.quadric, m, o);
         if (one_minus_cos_max > 0.0f) {
             // Uniform in the cone that the sphere subtends; distances in units of the radius.
             vec3 f = o / g.quadric.radius;
@@ -298,9 +300,9 @@ FN bool sample_quadric_light(uint geometry, vec3 ref_p, vec2 u, OUT(ShapeSample)
             vec3 local = sample_uniform_cone(u, one_minus_cos_max);
             float sin2 = local.x * local.x + local.y * local.y;
             float half_chord = safe_sqrt(1.0f - d * d * sin2);
-            float t = d * local.z - half_chord;
-            // The point relative to the sphere's centre: no difference of large numbers, however far away the sphere
-            // is.
+            // The distance and the point relative to the sphere's centre: no differences of large numbers, however far away or
+            // close the sphere is.
+            float t = (length_squared(f) - 1.0f) / (d * local.z + half_chord);
             vec3 local_point = vec3(t * local.x, t * local.y, -(d * sin2 + half_chord * local.z));
             vec3 p = to_world(frame, local_point);
             p = p * (g.quadric.radius / length_of(p));
@@ -340,7 +342,7 @@ FN float pdf_quadric_light(uint geometry, vec3 ref_p, vec3 position, vec3 ng, ve
     TransformRecord m = transforms[g.transform];
     uint kind = g.kind;
     if (kind == GEOMETRY_SPHERE && sphere_is_whole(g.quadric) && sphere_hides_its_inside(g)) {
-        float one_minus_cos_max = sphere_cone(g.quadric, transform_point(m.from0, m.from1, m.from2, ref_p));
+        float one_minus_cos_max = sphere_cone(g.quadric, m, transform_point(m.from0, m.from1, m.from2, ref_p));
         if (one_minus_cos_max > 0.0f) {
             float stretch = 1.0f / length_of(transform_vector(m.from0, m.from1, m.from2, wi));
             return pdf_uniform_cone(one_minus_cos_max) * sphere_cone_stretch(m, stretch);
