@@ -1,6 +1,7 @@
 #include "core/scene/build_shapes.h"
 
 #include "core/scene/area_lights.h"
+#include "core/scene/touching.h"
 
 #include <fmt/format.h>
 #include <glm/glm.hpp>
@@ -111,6 +112,9 @@ class ShapeBuilder {
         return set;
     }
 
+    // Where the shape of each of Scene::geometries stands.
+    const std::vector<Location>& places() const { return places_; }
+
  private:
     void build(ShapeDescription& shape, bool in_object) {
         const ShapeFactory* factory = shape_registry().find(shape.type);
@@ -135,6 +139,7 @@ class ShapeBuilder {
                              {&context_, &shape, "Shape"}};
         const GeometrySet before{uint32_t(context_.scene.geometries.size()), 0};
         (*factory)(context);
+        places_.resize(context_.scene.geometries.size(), shape.location);
         const Box box = set_bounds(context_.scene, {before.first_geometry, uint32_t(context_.scene.geometries.size()) -
                                                                                before.first_geometry});
         if (!box.empty() && box.too_far()) refuse_distance(context_.diagnostics, shape.location, "shape");
@@ -168,6 +173,7 @@ class ShapeBuilder {
 
     BuildContext& context_;
     std::vector<std::optional<AreaLight>> area_lights_;  // read when a shape first needs one
+    std::vector<Location> places_;
 };
 
 }  // namespace
@@ -256,6 +262,7 @@ void build_shapes(BuildContext& context) {
         }
     }
     note_unused(context, set_of_object);
+    warn_of_touching_surfaces(context, builder.places());
 }
 
 kernel::vec4 bounding_sphere(const Scene& scene) {
