@@ -22,6 +22,25 @@ INSTANTIATE_TEST_SUITE_P(Scenes, BackendsLongTest,
                          testing::Values("reference/diffuse", "reference/dielectric-smooth", "reference/textures"),
                          [](const auto& info) { return test_name(info.param); });
 
+// Those that backends_test leaves out.
+class AnalyticScenesTest : public testing::TestWithParam<std::string> {};
+
+TEST_P(AnalyticScenesTest, OneSampleIsTheSameOnVulkan) {
+    RenderSettings settings;
+    settings.samples = 1;
+    settings.seed = 20;
+    expect_agreement(GetParam(), "vulkan", settings, 1e-5, 0.999);
+}
+
+std::vector<std::string> analytic_scenes() {
+    std::vector<std::string> scenes = small_scenes();
+    std::erase_if(scenes, [](const std::string& name) { return !name.starts_with("analytic/"); });
+    return scenes;
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, AnalyticScenesTest, testing::ValuesIn(analytic_scenes()),
+                         [](const auto& info) { return test_name(info.param); });
+
 class LargeScenesTest : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
 
 TEST_P(LargeScenesTest, OneSampleIsTheSame) {
