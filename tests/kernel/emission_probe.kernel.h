@@ -38,7 +38,7 @@ KERNEL(emission_probe) {
         vec2 disk = p.centre.w * sample_concentric_disk(u);
         Frame frame = frame_from_z(n);
         LightSample light;
-        if (light_sample(vec3(p.centre) + frame.x * disk.x + frame.y * disk.y, choice, v, light)) {
+        if (light_sample(vec3(p.centre) + frame.x * disk.x + frame.y * disk.y, choice, v, false, light)) {
             float area = PI * p.centre.w * p.centre.w;
             flux = light.radiance * (max(dot3(light.wi, n), 0.0f) * area / light.pdf);
         }

@@ -9,7 +9,7 @@ CONST uint PROBE_PDF =
          // that it meets; (distance, number of hits, pdf of the first, -)
 
 struct LightProbe {
-    uvec4 what;  // operation, seed, light, -
+    uvec4 what;  // operation, seed, light, whether samples are weighed against those of a BSDF
     vec4 ref_p;
 };
 
@@ -60,7 +60,7 @@ KERNEL(light_probe) {
         uvec2 u;
         u.x = rng_bits(rng);
         u.y = rng_bits(rng);
-        bool any = light_sample(ref_p, choice, u, found);
+        bool any = light_sample(ref_p, choice, u, p.what.w != 0u, found);
         if (!any) found.pdf = 0.0f;
         d = found.wi;
         light = found.light;
@@ -73,7 +73,7 @@ KERNEL(light_probe) {
     float hits = 0.0f;
     if (look && light < scene[0].infinite_lights) {
         radiance = environment_radiance(d);
-        pdf = environment_pdf(d);
+        pdf = environment_pdf(d, p.what.w != 0u);
         first = pdf;
         hits = 1.0f;
     } else if (look && HAS(EFFECT_AREA_LIGHTS)) {

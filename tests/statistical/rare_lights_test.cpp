@@ -41,7 +41,8 @@ TEST_P(RareLights, ATexelTakesNoLightFromTheSky) {
         file +
         "\"\nMaterial \"diffuse\" \"rgb reflectance\" [ 1 1 1 ]\n"
         "Shape \"trianglemesh\" \"integer indices\" [ 0 1 2 0 2 3 ] \"point3 P\" [ -1 -1 0 1 -1 0 1 1 0 -1 1 0 ]\n";
-    expect_mean_of_runs(text, GetParam(), "path:maxdepth=1", 16, 1.0, 0.0, 0.03);
+    // Of path, there is no noise: light samples leave an even sky to those of the BSDF.
+    expect_mean_of_runs(text, GetParam(), "path:maxdepth=1", 16, 1.0, 1e-6, 0.03);
     for (const char* integrator : {"sppm:maxdepth=1,direct=photons,photonsperiteration=100000,radius=0.2",
                                    "photon_map:maxdepth=1,direct=photons,photons=100000,radius=0.2"})
         expect_mean_of_runs(text, GetParam(), integrator, 1, 1.0, 0.0, 0.2);

@@ -36,8 +36,9 @@ class LightAsker {
     LightAsker(Device& device, const KernelHandle& kernel, const Scene& scene)
         : device_(device), scene_(device.upload(scene)), kernel_(kernel) {}
 
+    bool weighted = false;  // samples are weighed against those of a BSDF
     std::vector<LightAnswer> sample(glm::vec3 ref_p, uint32_t count, uint32_t seed = 1) {
-        const auto v = run({{0, seed, 0, 0}, glm::vec4(ref_p, 0)}, {glm::vec4(0)}, count);
+        const auto v = run({{0, seed, 0, weighted}, glm::vec4(ref_p, 0)}, {glm::vec4(0)}, count);
         std::vector<LightAnswer> answers(count);
         for (uint32_t i = 0; i < count; ++i)
             answers[i] = {glm::vec3(v[2 * i]), v[2 * i].w,     v[2 * i + 1].x,
@@ -45,7 +46,7 @@ class LightAsker {
         return answers;
     }
     std::vector<DirectionAnswer> look(glm::vec3 ref_p, const std::vector<glm::vec4>& directions, uint32_t light = 0) {
-        const auto v = run({{1, 0, light, 0}, glm::vec4(ref_p, 0)}, directions, uint32_t(directions.size()));
+        const auto v = run({{1, 0, light, weighted}, glm::vec4(ref_p, 0)}, directions, uint32_t(directions.size()));
         std::vector<DirectionAnswer> answers(directions.size());
         for (size_t i = 0; i < directions.size(); ++i)
             answers[i] = {v[2 * i].x, v[2 * i].w, v[2 * i + 1].x, v[2 * i + 1].y, v[2 * i + 1].z};

@@ -23,7 +23,7 @@ RARE_FN void log_light(LightSample light, Spectrum f, Spectrum through, float we
 // random numbers.
 FN Spectrum direct_light(IN(Surface) s, IN(Vertex) v, uint medium, uint u_choice, uvec2 u, bool weighted) {
     LightSample light;
-    if (!light_sample(s.position, u_choice, u, light)) return Spectrum(0.0f);
+    if (!light_sample(s.position, u_choice, u, weighted, light)) return Spectrum(0.0f);
     vec3 wi = to_local(v.frame, light.wi);
     float density;
     uint jobs = weighted ? LAYERED_VALUE | LAYERED_DENSITY : LAYERED_VALUE;

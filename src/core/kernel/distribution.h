@@ -48,6 +48,9 @@ struct TexelSample {
     vec2 st;
 };
 
+// The numbers that such a density has in `distributions`.
+FN uint image_distribution_size(uint width, uint height) { return height + 1u + height * (width + 1u); }
+
 FN TexelSample sample_image_distribution(uint offset, uint width, uint height, uvec2 bits) {
     uvec2 number = uvec2(cdf_number(bits.x), cdf_number(bits.y));
     TexelSample s;

@@ -133,7 +133,7 @@ FN bool emit_photon(uint u_choice, float u_side, vec2 u_place, uvec2 u_direction
         vec3 to_light;
         Spectrum radiance;
         float pdf;
-        found = environment_sample(e.light, u_direction, to_light, radiance, pdf);
+        found = environment_sample(e.light, u_direction, false, to_light, radiance, pdf);
         if (found) {
             e.direction = -to_light;
             e.origin = distant_origin(to_light, u_place);

@@ -237,7 +237,8 @@ CONST uint CDF_TOTAL = 0x80000000u;  // the last value of every CDF in `distribu
 //
 // `distributions` contains, at offsets that are stored in records:
 // - the CDF for choosing a light (number of lights + 1 integers, from 0 to CDF_TOTAL);
-// - for each infinite image of w x h texels, a CDF of its rows (h + 1 integers), then a CDF of each row's texels (w + 1);
+// - for each infinite image of w x h texels, a CDF of its rows (h + 1 integers), then a CDF of each row's texels (w + 1); and
+//   the same for what is above the image's mean (environment.h);
 // - the tables of a smooth pixel filter (CameraRecord; bits of floats).
 // The probability of an interval is the difference of its two numbers over CDF_TOTAL. It is exact, and positive for every
 // positive weight (distribution.h).

@@ -199,8 +199,8 @@ CONST uint LIGHTS_CHOSEN_BY_PLACE = 256u;
 FN bool light_choice_needs_number() { return scene[0].light_count > LIGHTS_CHOSEN_BY_PLACE; }
 
 // Chooses a light in proportion to its power, and samples it from ref_p. u_choice and u_place are bits of random
-// numbers (random.h). False if no light arrives.
-FN bool light_sample(vec3 ref_p, uint u_choice, uvec2 u_place, OUT(LightSample) s) {
+// numbers (random.h). `weighted`: the sample is weighed against one of the BSDF by environment_pdf. False if no light arrives.
+FN bool light_sample(vec3 ref_p, uint u_choice, uvec2 u_place, bool weighted, OUT(LightSample) s) {
     s.wi = vec3(0.0f, 0.0f, 1.0f);
     s.radiance = Spectrum(0.0f);
     s.pdf = 0.0f;
@@ -227,7 +227,7 @@ FN bool light_sample(vec3 ref_p, uint u_choice, uvec2 u_place, OUT(LightSample) 
     uint kind = lights[s.light].kind;
     if (HAS(EFFECT_AREA_LIGHTS) && kind <= LIGHT_GEOMETRY) return sample_area_light(s.light, ref_p, unit_floats(u), s);
     if (HAS(EFFECT_ENVIRONMENT) && (kind == LIGHT_INFINITE || kind == LIGHT_INFINITE_IMAGE)) {
-        return environment_sample(s.light, u, s.wi, s.radiance, s.pdf) && !is_black(s.radiance);
+        return environment_sample(s.light, u, weighted, s.wi, s.radiance, s.pdf) && !is_black(s.radiance);
     }
     if (HAS(EFFECT_DISTANT_LIGHTS) && kind == LIGHT_DISTANT) {
         s.wi = light_direction(lights[s.light]);

@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kTotal = kernel::CDF_TOTAL;
 
+constexpr double kLeastAboveMean = 1e-3;
+
 double alike(size_t) { return 1; }
 
 // The CDF of weight(0), weight(1), ... into `out` (count + 1 numbers); returns their sum.
@@ -82,6 +84,24 @@ uint32_t append_image_distribution(std::span<const float> weights, uint32_t widt
     fill_cdf(
         height, [&](size_t y) { return rows[y]; }, distributions.data() + offset);
     return uint32_t(offset);
+}
+
+uint32_t append_sky_distributions(std::span<const float> weights, uint32_t width, uint32_t height,
+                                  std::vector<uint32_t>& distributions) {
+    const uint32_t offset = append_image_distribution(weights, width, height, kEvenLightShare, distributions);
+    double sum = 0, above = 0;
+    for (const float weight : weights) sum += weight;
+    const double mean = sum / double(weights.size());
+    std::vector<float> brighter(weights.size());
+    for (size_t i = 0; i < weights.size(); ++i) {
+        brighter[i] = float(std::max(0.0, weights[i] - mean));
+        above += brighter[i];
+    }
+    // Of a sky that is nearly even, rounding errors would be left.
+    const bool compensates = above > kLeastAboveMean * sum;
+    append_image_distribution(compensates ? std::span<const float>(brighter) : weights, width, height,
+                              compensates ? 0.0 : kEvenLightShare, distributions);
+    return offset;
 }
 
 void choose_lights(Scene& scene, std::span<const double> powers) {

@@ -22,6 +22,12 @@ uint32_t append_cdf(std::span<const double> weights, std::vector<uint32_t>& dist
 uint32_t append_image_distribution(std::span<const float> weights, uint32_t width, uint32_t height, double even,
                                    std::vector<uint32_t>& distributions);
 
+// Appends the two distributions of an infinite light's image, one behind the other, and returns the first one's offset: in
+// proportion to `weights`, with kEvenLightShare; and to what they have above their mean, for samples that are weighed against
+// those of a BSDF (core/kernel/environment.h). The second one is the first if hardly anything is above the mean.
+uint32_t append_sky_distributions(std::span<const float> weights, uint32_t width, uint32_t height,
+                                  std::vector<uint32_t>& distributions);
+
 // The fraction of samples that is spread evenly over all lights with a positive power, and over all texels of a sky that are
 // not black: a light that is weak on the whole may be the only one that reaches some corner.
 inline constexpr double kEvenLightShare = 0.05;

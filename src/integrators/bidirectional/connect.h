@@ -34,7 +34,7 @@ RARE_FN void log_connection(vec3 to, float distance, Spectrum value, float weigh
 // Next-event estimation: strategy s = 1.
 FN Spectrum connect_to_light(IN(Subpath) path, IN(Surface) s, IN(Vertex) v, uint u_choice, uvec2 u) {
     LightSample light;
-    if (!light_sample(s.position, u_choice, u, light)) return Spectrum(0.0f);
+    if (!light_sample(s.position, u_choice, u, false, light)) return Spectrum(0.0f);
     vec3 wi = to_local(v.frame, light.wi);
     float forward;
     float reverse;

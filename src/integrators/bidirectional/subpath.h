@@ -132,7 +132,7 @@ FN float weight_of_hit_light(IN(Subpath) path, IN(Surface) s) {
 FN float weight_of_environment(IN(Subpath) path) {
     if (path.walk.depth == 0) return 1.0f;
     if (passes[0].strategies == STRATEGIES_MERGING) return path.is_specular ? 1.0f : 0.0f;
-    float direct = environment_pdf(path.walk.ray.direction);
+    float direct = environment_pdf(path.walk.ray.direction, false);
     uint h = heuristic();
     return mis_weight(mis_term(direct, h) *
                       (path.mis.a + mis_term(mis_area_density(1.0f / distant_area()), h) * path.mis.d));

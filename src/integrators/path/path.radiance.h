@@ -57,7 +57,7 @@ FN Spectrum radiance_along(IN(Ray) ray, INOUT(Sampler) numbers, INOUT(FirstHit) 
         Spectrum emitted = environment_radiance(walk.ray.direction);
         if (!is_black(emitted)) {
             float weight =
-                lights_were_sampled ? power_heuristic(bsdf_density, environment_pdf(walk.ray.direction)) : 1.0f;
+                lights_were_sampled ? power_heuristic(bsdf_density, environment_pdf(walk.ray.direction, true)) : 1.0f;
             radiance += walk.throughput * emitted * weight;
             PATH_LOG(log_environment(walk.ray.direction, walk.throughput * emitted, weight));
         }

@@ -72,7 +72,7 @@ void build_image(LightContext& context, const std::string& filename, float scale
         scale = given > 0.0 ? float(double(scale) * illuminance / given) : 0.0f;
     }
     record.transform = build.add_transform(context.light.world_from_light.matrix[0], context.light.location);
-    record.distribution = append_image_distribution(weights, width, height, kEvenLightShare, build.scene.distributions);
+    record.distribution = append_sky_distributions(weights, width, height, build.scene.distributions);
     record.emission = Spectrum(scale);
     context.ask(kernel::EFFECT_ENVIRONMENT);
     context.ask(kernel::EFFECT_ENVIRONMENT_IMAGE);
