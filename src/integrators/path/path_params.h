@@ -6,7 +6,7 @@
 
 #define PATH_PARAMS(P)                                                                           \
     P(int, maxdepth, 5, 0, 100000, "most scattering vertices of a path, specular ones included") \
-    P(int, rrdepth, 1, 0, 100000, "vertices after which Russian roulette may end a path")
+    P(int, rrdepth, 3, 0, 100000, "vertices after which Russian roulette may end a path")
 PARAMS(PathParams, PATH_PARAMS)
 
 #endif
