@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <ctime>
 #include <string>
 
 namespace lampyris {
@@ -62,20 +63,42 @@ TEST(Touching, IsFoundInTurnedScenes) {
     EXPECT_GE(found, 40);  // in some, the border of a step lies in between (touching.cpp)
 }
 
-TEST(Touching, TakesLinearTime) {
-    // Two plane meshes of 20,000 triangles in one plane: of their pairs, only so many are looked at.
+TEST(Touching, ConcernsPatchesAndEqualQuadrics) {
+    const std::string patch = "Shape \"bilinearmesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 1 1 0 ]\n";
+    const std::string triangle = "Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 1 0 ]\n";
+    const std::string glass = "Material \"dielectric\"\n";
+    EXPECT_EQ(warnings_of(glass + patch + patch), 1u);
+    EXPECT_EQ(warnings_of(glass + patch + triangle), 1u);
+    EXPECT_EQ(warnings_of(glass + patch + "Translate 0 1 0\n" + patch), 0u);
+    for (const std::string shape : {"\"sphere\"", "\"disk\"", "\"cylinder\""}) {
+        EXPECT_EQ(warnings_of("Shape " + shape + "\nShape " + shape + "\n"), 0u);
+        EXPECT_EQ(warnings_of("Shape " + shape + "\n" + glass + "Shape " + shape + "\n"), 1u) << shape;
+        EXPECT_EQ(warnings_of(glass + "Shape " + shape + "\nTranslate 0 0 3\nShape " + shape + "\n"), 0u) << shape;
+    }
+}
+
+// A plane mesh of 2 n^2 triangles.
+std::string grid(int n) {
     std::string points, indices;
-    for (int i = 0; i <= 100; ++i)
-        for (int k = 0; k <= 100; ++k) points += fmt::format(" {} {} 0", i, k);
-    for (int i = 0; i < 100; ++i)
-        for (int k = 0; k < 100; ++k) {
-            const int a = 101 * i + k;
-            indices += fmt::format(" {} {} {} {} {} {}", a, a + 1, a + 101, a + 1, a + 102, a + 101);
+    for (int i = 0; i <= n; ++i)
+        for (int k = 0; k <= n; ++k) points += fmt::format(" {} {} 0", i, k);
+    for (int i = 0; i < n; ++i)
+        for (int k = 0; k < n; ++k) {
+            const int a = (n + 1) * i + k, b = a + n + 1;
+            indices += fmt::format(" {} {} {} {} {} {}", a, a + 1, b, a + 1, b + 1, b);
         }
-    const std::string mesh =
-        "Shape \"trianglemesh\" \"point3 P\" [" + points + " ] \"integer indices\" [" + indices + " ]\n";
-    EXPECT_EQ(warnings_of("Material \"dielectric\"\n" + mesh + "Translate 1000 0 0\n" + mesh), 0u);
-    EXPECT_EQ(warnings_of("Material \"dielectric\"\n" + mesh + mesh), 1u);
+    return "Shape \"trianglemesh\" \"point3 P\" [" + points + " ] \"integer indices\" [" + indices + " ]\n";
+}
+
+// Each of these has 4 * 10^8 pairs or more in one plane, and would take minutes: of a mesh with itself, none is looked at, and of
+// two meshes only so many.
+TEST(Touching, TakesNoTimeForManyTrianglesInAPlane) {
+    const std::string glass = "Material \"dielectric\"\n";
+    const std::clock_t before = std::clock();
+    EXPECT_EQ(warnings_of(glass + grid(300) + moved("0 0 1", "\"diffuse\"")), 0u);
+    EXPECT_EQ(warnings_of(glass + grid(100) + "Translate 1000 0 0\n" + grid(100)), 0u);
+    EXPECT_EQ(warnings_of(glass + grid(100) + grid(100)), 1u);
+    EXPECT_LT(double(std::clock() - before) / CLOCKS_PER_SEC, 10.0);
 }
 
 }  // namespace

@@ -7,7 +7,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <set>
+#include <string>
 #include <unordered_map>
 #include <utility>
 
@@ -56,12 +58,17 @@ struct Triangle {
     uint32_t geometry = 0;
 };
 
+// Of a patch, the triangles on either side of a diagonal: all of it if it is plane.
+constexpr std::array<std::array<uint32_t, 3>, 2> kHalves{{{0, 1, 3}, {0, 3, 2}}};
+
 Triangle triangle_of(const Scene& scene, uint32_t geometry, uint32_t index) {
     const kernel::GeometryRecord& g = scene.geometries[geometry];
+    const bool patch = g.kind == kernel::GEOMETRY_BILINEAR;
     Triangle t;
     t.geometry = geometry;
     for (uint32_t k = 0; k < 3; ++k) {
-        const size_t v = 3 * (size_t(g.first_vertex) + scene.indices[g.first_index + 3 * size_t(index) + k]);
+        const size_t corner = patch ? 4 * size_t(index / 2) + kHalves[index % 2][k] : 3 * size_t(index) + k;
+        const size_t v = 3 * (size_t(g.first_vertex) + scene.indices[g.first_index + corner]);
         t.corners[k] = {scene.positions[v], scene.positions[v + 1], scene.positions[v + 2]};
     }
     const dvec3 n = glm::cross(t.corners[1] - t.corners[0], t.corners[2] - t.corners[0]);
@@ -129,16 +136,30 @@ class Planes {
         return hash;
     }
 
-    void add(const Triangle& t) { by_key_[key(t)].push_back(t); }
+    // Those of a geometry one after the other.
+    void add(const Triangle& t) {
+        std::vector<std::vector<Triangle>>& shapes = by_key_[key(t)];
+        if (shapes.empty() || shapes.back().front().geometry != t.geometry) shapes.emplace_back();
+        shapes.back().push_back(t);
+    }
     bool empty() const { return by_key_.empty(); }
-    const std::vector<Triangle>* of(const Triangle& t) const {
+    // Triangles of the same plane, by geometry.
+    const std::vector<std::vector<Triangle>>* of(const Triangle& t) const {
         const auto found = by_key_.find(key(t));
         return found == by_key_.end() ? nullptr : &found->second;
     }
 
  private:
-    std::unordered_map<uint64_t, std::vector<Triangle>> by_key_;
+    std::unordered_map<uint64_t, std::vector<std::vector<Triangle>>> by_key_;
 };
+
+// Kind, size and place of a sphere, disk or cylinder.
+std::string quadric_key(const Scene& scene, const kernel::GeometryRecord& g) {
+    std::string key(reinterpret_cast<const char*>(&g.kind), sizeof g.kind);
+    key.append(reinterpret_cast<const char*>(&g.quadric), sizeof g.quadric);
+    key.append(reinterpret_cast<const char*>(&scene.transforms[g.transform]), sizeof(kernel::TransformRecord));
+    return key;
+}
 
 constexpr size_t kMostWarnings = 10;
 // Planes with very many triangles would take too long.
@@ -153,36 +174,54 @@ void warn_of_touching_surfaces(BuildContext& context, const std::vector<Location
     size_t pairs = 0;
     const auto for_each_triangle = [&](const GeometrySet& set, auto&& visit) {
         for (uint32_t g = set.first_geometry; g < set.first_geometry + set.geometry_count; ++g) {
-            if (scene.geometries[g].kind != kernel::GEOMETRY_TRIANGLES) continue;
-            for (uint32_t i = 0; i < scene.geometries[g].primitive_count; ++i) {
+            const kernel::GeometryRecord& record = scene.geometries[g];
+            if (record.kind > kernel::GEOMETRY_BILINEAR) continue;
+            const uint32_t count = record.primitive_count * (record.kind == kernel::GEOMETRY_BILINEAR ? 2 : 1);
+            for (uint32_t i = 0; i < count; ++i) {
                 const Triangle t = triangle_of(scene, g, i);
                 if (t.normal != dvec3(0.0)) visit(t);
             }
         }
     };
+    const auto tell = [&](uint32_t a, uint32_t b) {
+        const auto pair = std::minmax(a, b);
+        if (told.size() >= kMostWarnings || !told.insert(pair).second) return;
+        context.diagnostics.warning(
+            places[pair.second],
+            fmt::format(
+                "a surface of this shape lies in the same place as one of the shape at {}, and light that passes "
+                "through one of them misses the other",
+                context.description.sources->describe(places[pair.first])),
+            "a gap of 1e-6 of the coordinates is enough, or let the shapes overlap");
+    };
     for (const GeometrySet& set : scene.sets) {
         if (set.geometry_count < 2) continue;
+        // Curved shapes: those that are the same.
+        std::map<std::string, uint32_t> first_of;
+        for (uint32_t g = set.first_geometry; g < set.first_geometry + set.geometry_count; ++g) {
+            const kernel::GeometryRecord& record = scene.geometries[g];
+            if (record.kind <= kernel::GEOMETRY_BILINEAR) continue;
+            const auto [first, is_first] = first_of.try_emplace(quadric_key(scene, record), g);
+            if (!is_first && (passes(record) || passes(scene.geometries[first->second]))) tell(first->second, g);
+        }
         Planes planes;
         for_each_triangle(set, [&](const Triangle& t) {
             if (passes(scene.geometries[t.geometry])) planes.add(t);
         });
         if (planes.empty()) continue;
         for_each_triangle(set, [&](const Triangle& t) {
-            const std::vector<Triangle>* others = planes.of(t);
-            if (!others) return;
-            for (const Triangle& other : *others) {
-                if (other.geometry == t.geometry) continue;
-                if (told.size() >= kMostWarnings || ++pairs > kMostPairs) return;
-                const auto pair = std::minmax(t.geometry, other.geometry);
-                if (told.contains(pair) || !in_one_plane(other, t) || !overlap(other, t)) continue;
-                told.insert(pair);
-                context.diagnostics.warning(
-                    places[pair.second],
-                    fmt::format(
-                        "a surface of this shape lies in the same place as one of the shape at {}, and light that "
-                        "passes through one of them misses the other",
-                        context.description.sources->describe(places[pair.first])),
-                    "a gap of 1e-6 of the coordinates is enough, or let the shapes overlap");
+            const std::vector<std::vector<Triangle>>* shapes = planes.of(t);
+            if (!shapes) return;
+            for (const std::vector<Triangle>& shape : *shapes) {
+                if (shape.front().geometry == t.geometry ||
+                    told.contains(std::minmax(t.geometry, shape.front().geometry)))
+                    continue;
+                for (const Triangle& other : shape) {
+                    if (told.size() >= kMostWarnings || ++pairs > kMostPairs) return;
+                    if (!in_one_plane(other, t) || !overlap(other, t)) continue;
+                    tell(t.geometry, other.geometry);
+                    break;
+                }
             }
         });
     }

@@ -5,9 +5,9 @@
 
 namespace lampyris {
 
-// Warns of triangles that lie in the plane of others, and over them, where light passes through one of the two: a ray meets one
-// surface and goes on beyond the other (docs/numerics.md). Only triangles are looked at, and those of an object or of the
-// world among themselves. `places` are those of the scene's geometries.
+// Warns of triangles and plane patches that lie in the plane of others, and over them, and of equal curved shapes, where light
+// passes through one of the two: a ray meets one surface and goes on beyond the other (docs/numerics.md). Those of an object, or
+// of the world, are compared among themselves. `places` are those of the scene's geometries.
 void warn_of_touching_surfaces(BuildContext& context, const std::vector<Location>& places);
 
 }  // namespace lampyris
