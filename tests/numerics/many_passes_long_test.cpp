@@ -52,7 +52,7 @@ std::vector<Case> cases() {
             {"light:maxdepth=1,lightpaths=20", 1e-4},
             {"bdpt:maxdepth=1", 1e-4},
             {"vcm:maxdepth=1,radius=0.3", 1e-2},
-            {"bpm:maxdepth=1,radius=0.3,lightpaths=20", 1e-2},
+            {"bpm:maxdepth=1,radius=0.3,lightpaths=100", 1e-2},
             {"mlt:maxdepth=1,bootstrapsamples=64,chains=4", 1e-4},
             {"sppm:schedule=shared," + floor, 1e-2},
             {"sppm:schedule=memoryless," + floor, 1e-2},
