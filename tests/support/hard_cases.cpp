@@ -226,8 +226,7 @@ std::vector<HardCase> make_cases() {
                "radius=0.5,alpha=1,photonsperiteration=5000", 32);
     cases.back().power = 0.15;
     const HardCase one_cell = cases.back();
-    for (const std::string map : {"brute_force", "bvh", "cuckoo", "hash_list", "kd_tree", "linked_list", "sorted_grid",
-                                  "splat", "stochastic_hash", "uniform_grid"}) {
+    for (const std::string& map : photon_maps().names()) {
         cases.push_back(one_cell);
         cases.back().name += ", " + map;
         cases.back().photon_map = map;
