@@ -262,7 +262,7 @@ void build_shapes(BuildContext& context) {
         }
     }
     note_unused(context, set_of_object);
-    warn_of_touching_surfaces(context, builder.places());
+    separate_touching_surfaces(context, builder.places());
 }
 
 kernel::vec4 bounding_sphere(const Scene& scene) {

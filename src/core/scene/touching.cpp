@@ -1,5 +1,7 @@
 #include "core/scene/touching.h"
 
+#include "core/scene/touching_planes.h"
+
 #include <fmt/format.h>
 #include <glm/glm.hpp>
 
@@ -10,13 +12,12 @@
 #include <map>
 #include <set>
 #include <string>
-#include <unordered_map>
+#include <tuple>
 #include <utility>
 
 namespace lampyris {
 namespace {
 
-using glm::dvec2;
 using glm::dvec3;
 
 // Which materials let light pass. Those of a stranger's plugin are not known to.
@@ -26,6 +27,12 @@ class Passing {
 
     bool operator()(const kernel::GeometryRecord& g) {
         return g.alpha_texture != kNone || g.alpha < 1.0f || material(g.material);
+    }
+    // Whether it is the boundary of a body, so that "inwards" has a meaning. Shapes that emit stay where their lights are.
+    bool is_boundary(const kernel::GeometryRecord& g) const {
+        const uint32_t kind = scene_.materials[g.material].kind;
+        return (kind == kernel::MATERIAL_DIELECTRIC || kind == kernel::MATERIAL_INTERFACE) &&
+               g.alpha_texture == kNone && g.alpha >= 1.0f && g.first_light == kernel::NONE;
     }
 
  private:
@@ -52,107 +59,6 @@ class Passing {
     std::vector<Answer> known_;
 };
 
-struct Triangle {
-    std::array<dvec3, 3> corners;
-    dvec3 normal{0.0};  // unit length, and 0 for a triangle without area
-    uint32_t geometry = 0;
-};
-
-// Of a patch, the triangles on either side of a diagonal: all of it if it is plane.
-constexpr std::array<std::array<uint32_t, 3>, 2> kHalves{{{0, 1, 3}, {0, 3, 2}}};
-
-Triangle triangle_of(const Scene& scene, uint32_t geometry, uint32_t index) {
-    const kernel::GeometryRecord& g = scene.geometries[geometry];
-    const bool patch = g.kind == kernel::GEOMETRY_BILINEAR;
-    Triangle t;
-    t.geometry = geometry;
-    for (uint32_t k = 0; k < 3; ++k) {
-        const size_t corner = patch ? 4 * size_t(index / 2) + kHalves[index % 2][k] : 3 * size_t(index) + k;
-        const size_t v = 3 * (size_t(g.first_vertex) + scene.indices[g.first_index + corner]);
-        t.corners[k] = {scene.positions[v], scene.positions[v + 1], scene.positions[v + 2]};
-    }
-    const dvec3 n = glm::cross(t.corners[1] - t.corners[0], t.corners[2] - t.corners[0]);
-    if (const double length = glm::length(n); length > 0.0) t.normal = n / length;
-    return t;
-}
-
-double largest_coordinate(const Triangle& t) {
-    double largest = 0.0;
-    for (const dvec3& p : t.corners)
-        for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, std::abs(p[axis]));
-    return largest;
-}
-
-// Rays start this far beyond a surface, in parts of the coordinates: what is closer is not seen.
-constexpr double kSame = 4e-7;
-
-bool in_one_plane(const Triangle& a, const Triangle& b) {
-    const double error = kSame * std::max(largest_coordinate(a), largest_coordinate(b));
-    return std::all_of(b.corners.begin(), b.corners.end(),
-                       [&](const dvec3& p) { return std::abs(glm::dot(p - a.corners[0], a.normal)) <= error; });
-}
-
-// Whether triangles of one plane share more than an edge: no edge's line separates them.
-bool overlap(const Triangle& a, const Triangle& b) {
-    const double error = 1e-5 * std::max(largest_coordinate(a), largest_coordinate(b));
-    const dvec3 size = glm::abs(a.normal);
-    const int dropped = size.x > size.y && size.x > size.z ? 0 : (size.y > size.z ? 1 : 2);
-    const auto flat = [&](const dvec3& p) { return dvec2(p[(dropped + 1) % 3], p[(dropped + 2) % 3]); };
-    for (const Triangle* edges : {&a, &b}) {
-        for (int i = 0; i < 3; ++i) {
-            const dvec2 from = flat(edges->corners[size_t(i)]), to = flat(edges->corners[size_t((i + 1) % 3)]);
-            const dvec2 across = glm::normalize(dvec2(to.y - from.y, from.x - to.x));
-            double a_low = 1e300, a_high = -1e300, b_low = 1e300, b_high = -1e300;
-            for (const dvec3& p : a.corners) {
-                const double x = glm::dot(flat(p) - from, across);
-                a_low = std::min(a_low, x), a_high = std::max(a_high, x);
-            }
-            for (const dvec3& p : b.corners) {
-                const double x = glm::dot(flat(p) - from, across);
-                b_low = std::min(b_low, x), b_high = std::max(b_high, x);
-            }
-            if (!(std::min(a_high, b_high) - std::max(a_low, b_low) > error)) return false;
-        }
-    }
-    return true;
-}
-
-// Triangles by their planes. Equal numbers give equal keys: faces that touch as they were written are found. Of faces that rounding
-// has moved, some few are not, where a number lies at the border of its step.
-class Planes {
- public:
-    static uint64_t key(const Triangle& t) {
-        dvec3 n = t.normal;
-        const dvec3 size = glm::abs(n);
-        const double largest = size.x >= size.y && size.x >= size.z ? n.x : (size.y >= size.z ? n.y : n.z);
-        if (largest < 0.0) n = -n;
-        const double distance = glm::dot(t.corners[0], n);
-        // The distance in steps of about 1e-5 of itself.
-        int exponent = 0;
-        const double fraction = std::frexp(distance, &exponent);
-        uint64_t hash = 0xcbf29ce484222325ull;
-        for (const double x : {n.x * 1e4, n.y * 1e4, n.z * 1e4, fraction * 1e5, double(exponent)})
-            hash = (hash ^ uint64_t(int64_t(std::llround(x)))) * 0x100000001b3ull, hash ^= hash >> 29;
-        return hash;
-    }
-
-    // Those of a geometry one after the other.
-    void add(const Triangle& t) {
-        std::vector<std::vector<Triangle>>& shapes = by_key_[key(t)];
-        if (shapes.empty() || shapes.back().front().geometry != t.geometry) shapes.emplace_back();
-        shapes.back().push_back(t);
-    }
-    bool empty() const { return by_key_.empty(); }
-    // Triangles of the same plane, by geometry.
-    const std::vector<std::vector<Triangle>>* of(const Triangle& t) const {
-        const auto found = by_key_.find(key(t));
-        return found == by_key_.end() ? nullptr : &found->second;
-    }
-
- private:
-    std::unordered_map<uint64_t, std::vector<std::vector<Triangle>>> by_key_;
-};
-
 // Kind, size and place of a sphere, disk or cylinder.
 std::string quadric_key(const Scene& scene, const kernel::GeometryRecord& g) {
     std::string key(reinterpret_cast<const char*>(&g.kind), sizeof g.kind);
@@ -161,70 +67,217 @@ std::string quadric_key(const Scene& scene, const kernel::GeometryRecord& g) {
     return key;
 }
 
-constexpr size_t kMostWarnings = 10;
+constexpr size_t kMostMessages = 10;
 // Planes with very many triangles would take too long.
 constexpr size_t kMostPairs = 2'000'000;
 
-}  // namespace
+// Faces that touch are moved apart by this part of the coordinates.
+constexpr double kGap = 3e-6;
+// No body is changed by more than this part of its size.
+constexpr double kMostChange = 1e-3;
 
-void warn_of_touching_surfaces(BuildContext& context, const std::vector<Location>& places) {
-    const Scene& scene = context.scene;
-    Passing passes(scene);
-    std::set<std::pair<uint32_t, uint32_t>> told;
-    size_t pairs = 0;
-    const auto for_each_triangle = [&](const GeometrySet& set, auto&& visit) {
-        for (uint32_t g = set.first_geometry; g < set.first_geometry + set.geometry_count; ++g) {
-            const kernel::GeometryRecord& record = scene.geometries[g];
-            if (record.kind > kernel::GEOMETRY_BILINEAR) continue;
-            const uint32_t count = record.primitive_count * (record.kind == kernel::GEOMETRY_BILINEAR ? 2 : 1);
-            for (uint32_t i = 0; i < count; ++i) {
-                const Triangle t = triangle_of(scene, g, i);
+// The largest coordinate in the world of what an object with coordinates up to `largest` becomes, in the object's own lengths.
+double reach_of_object(const Scene& scene, uint32_t set, double largest) {
+    double most = 0.0;
+    for (size_t i = 0; i < scene.instances.size(); ++i) {
+        if (scene.instance_sets[i] != set) continue;
+        const kernel::TransformRecord& t = scene.instances[i].transform;
+        double coordinate = 0.0, shrink = 0.0;
+        for (const kernel::vec4& row : {t.to0, t.to1, t.to2})
+            coordinate = std::max(coordinate, glm::length(dvec3(row)) * largest + std::abs(double(row.w)));
+        for (const kernel::vec4& row : {t.from0, t.from1, t.from2}) shrink = std::max(shrink, glm::length(dvec3(row)));
+        most = std::max(most, coordinate * shrink);
+    }
+    return most;
+}
+
+// Moves faces of a geometry to its inside.
+class Inset {
+ public:
+    // Asks for a gap between the face in which t lies and what it touches.
+    void add(const PlaneTriangle& t, double gap) {
+        planes_.add(t);
+        gap_ = std::max(gap_, gap);
+    }
+    bool contains(const PlaneTriangle& t) const { return planes_.contains(t); }
+
+    void apply(Scene& scene, uint32_t geometry) const {
+        std::map<std::array<float, 3>, std::vector<dvec3>> normals;  // of the faces to be moved, by vertex
+        const kernel::GeometryRecord& g = scene.geometries[geometry];
+        std::set<size_t> vertices;
+        for (uint32_t i = 0; i < plane_triangle_count(g); ++i) {
+            const PlaneTriangle t = plane_triangle(scene, geometry, i);
+            vertices.insert(t.vertices.begin(), t.vertices.end());
+            if (t.normal == dvec3(0.0) || !planes_.contains(t)) continue;
+            for (const size_t v : t.vertices) normals[position(scene, v)].push_back(t.normal);
+        }
+        for (const size_t v : vertices) {
+            const auto found = normals.find(position(scene, v));
+            if (found == normals.end()) continue;
+            const dvec3 by = displacement(found->second);
+            for (size_t axis = 0; axis < 3; ++axis) {
+                float& x = scene.positions[3 * v + axis];
+                x = float(double(x) + by[int(axis)]);
+            }
+        }
+    }
+
+ private:
+    static std::array<float, 3> position(const Scene& scene, size_t v) {
+        return {scene.positions[3 * v], scene.positions[3 * v + 1], scene.positions[3 * v + 2]};
+    }
+
+    // The vertex lies on all of these faces, and goes below each by the gap (projections onto half-spaces in turns).
+    dvec3 displacement(const std::vector<dvec3>& normals) const {
+        constexpr int kRounds = 32;
+        dvec3 by(0.0);
+        for (int round = 0; round < kRounds; ++round) {
+            bool moved = false;
+            for (const dvec3& n : normals) {
+                const double missing = gap_ + glm::dot(by, n);
+                if (missing > 1e-3 * gap_) by -= missing * n, moved = true;
+            }
+            if (!moved) break;
+        }
+        // At a sharp tip, the half-spaces meet far away.
+        const double length = glm::length(by), most = 4.0 * gap_;
+        return length > most ? by * (most / length) : by;
+    }
+
+    PlaneSet planes_;
+    double gap_ = 0.0;
+};
+
+// The search through one set, and what comes of it.
+class Search {
+ public:
+    Search(BuildContext& context, const std::vector<Location>& places)
+        : context_(context), scene_(context.scene), places_(places), passes_(scene_) {}
+
+    void run(uint32_t set_index) {
+        const GeometrySet& set = scene_.sets[set_index];
+        if (set.geometry_count < 2) return;
+        equal_quadrics(set);
+        TrianglesByPlane passing;
+        double largest = 0.0;
+        for_each_triangle(set, [&](const PlaneTriangle& t) {
+            largest = std::max(largest, t.largest);
+            if (passes_(scene_.geometries[t.geometry])) passing.add(t);
+        });
+        if (passing.empty()) return;
+        passing.sort();
+        object_reach_ = set_index == 0 ? 0.0 : reach_of_object(scene_, set_index, largest);
+        for_each_triangle(set, [&](const PlaneTriangle& t) {
+            const auto wanted = [&](uint32_t g) {
+                return g != t.geometry && !told_.contains(std::minmax(t.geometry, g));
+            };
+            passing.near(t, wanted, [&](const PlaneTriangle& other) {
+                if (++pairs_ > kMostPairs) return false;
+                if (!in_one_plane(other, t) || !overlap(other, t)) return true;
+                touch(t, other);
+                return false;
+            });
+        });
+        for (const auto& [geometry, inset] : insets_) inset.apply(scene_, geometry);
+        insets_.clear();
+    }
+
+    // For the user to know.
+    void report() {
+        size_t left = moved_.size();
+        for (const auto& [pair, gap] : moved_) {
+            if (moved_.size() - left == kMostMessages) break;
+            --left;
+            scene_.notes.push_back(fmt::format(
+                "{} (Shape): a face lies on one of the shape at {}, where light passes: it is moved inwards by {:.1g}",
+                where(pair.first), where(pair.second), gap));
+        }
+        if (left > 0) scene_.notes.push_back(fmt::format("{} more shapes touch, and are moved as well", left));
+    }
+
+ private:
+    template <typename Visit>
+    void for_each_triangle(const GeometrySet& set, const Visit& visit) const {
+        for (uint32_t g = set.first_geometry; g < set.first_geometry + set.geometry_count; ++g)
+            for (uint32_t i = 0; i < plane_triangle_count(scene_.geometries[g]); ++i) {
+                const PlaneTriangle t = plane_triangle(scene_, g, i);
                 if (t.normal != dvec3(0.0)) visit(t);
             }
-        }
-    };
-    const auto tell = [&](uint32_t a, uint32_t b) {
-        const auto pair = std::minmax(a, b);
-        if (told.size() >= kMostWarnings || !told.insert(pair).second) return;
-        context.diagnostics.warning(
-            places[pair.second],
-            fmt::format(
-                "a surface of this shape lies in the same place as one of the shape at {}, and light that passes "
-                "through one of them misses the other",
-                context.description.sources->describe(places[pair.first])),
-            "a gap of 1e-6 of the coordinates is enough, or let the shapes overlap");
-    };
-    for (const GeometrySet& set : scene.sets) {
-        if (set.geometry_count < 2) continue;
-        // Curved shapes: those that are the same.
+    }
+
+    // Curved shapes: those that are the same.
+    void equal_quadrics(const GeometrySet& set) {
         std::map<std::string, uint32_t> first_of;
         for (uint32_t g = set.first_geometry; g < set.first_geometry + set.geometry_count; ++g) {
-            const kernel::GeometryRecord& record = scene.geometries[g];
+            const kernel::GeometryRecord& record = scene_.geometries[g];
             if (record.kind <= kernel::GEOMETRY_BILINEAR) continue;
-            const auto [first, is_first] = first_of.try_emplace(quadric_key(scene, record), g);
-            if (!is_first && (passes(record) || passes(scene.geometries[first->second]))) tell(first->second, g);
+            const auto [first, is_first] = first_of.try_emplace(quadric_key(scene_, record), g);
+            if (!is_first && (passes_(record) || passes_(scene_.geometries[first->second]))) warn(first->second, g);
         }
-        Planes planes;
-        for_each_triangle(set, [&](const Triangle& t) {
-            if (passes(scene.geometries[t.geometry])) planes.add(t);
-        });
-        if (planes.empty()) continue;
-        for_each_triangle(set, [&](const Triangle& t) {
-            const std::vector<std::vector<Triangle>>* shapes = planes.of(t);
-            if (!shapes) return;
-            for (const std::vector<Triangle>& shape : *shapes) {
-                if (shape.front().geometry == t.geometry ||
-                    told.contains(std::minmax(t.geometry, shape.front().geometry)))
-                    continue;
-                for (const Triangle& other : shape) {
-                    if (told.size() >= kMostWarnings || ++pairs > kMostPairs) return;
-                    if (!in_one_plane(other, t) || !overlap(other, t)) continue;
-                    tell(t.geometry, other.geometry);
-                    break;
-                }
-            }
-        });
     }
+
+    // `a` and `b` overlap in one plane.
+    void touch(const PlaneTriangle& a, const PlaneTriangle& b) {
+        const bool a_can = passes_.is_boundary(scene_.geometries[a.geometry]),
+                   b_can = passes_.is_boundary(scene_.geometries[b.geometry]);
+        // Of two bodies, one ends where the other begins: the later one gives way. If both are on the same side, nobody knows
+        // which is to be inside of the other.
+        const bool unclear = a_can && b_can && glm::dot(a.normal, b.normal) > 0.0;
+        if (unclear || (!a_can && !b_can)) return warn(a.geometry, b.geometry);
+        const bool a_moves = a_can && (!b_can || a.geometry > b.geometry);
+        const PlaneTriangle& moved = a_moves ? a : b;
+        const PlaneTriangle& fixed = a_moves ? b : a;
+        Inset& inset = insets_[moved.geometry];
+        if (inset.contains(moved)) return;
+        const double gap = kGap * std::max({a.largest, b.largest, object_reach_}) + distance_from_plane(fixed, moved);
+        if (gap > kMostChange * size_of(moved.geometry)) return warn(a.geometry, b.geometry);
+        inset.add(moved, gap);
+        double& largest_gap = moved_[{moved.geometry, fixed.geometry}];
+        largest_gap = std::max(largest_gap, gap);
+    }
+
+    void warn(uint32_t a, uint32_t b) {
+        const auto pair = std::minmax(a, b);
+        if (!told_.insert(pair).second || told_.size() > kMostMessages) return;
+        context_.diagnostics.warning(
+            places_[pair.second],
+            fmt::format("a surface of this shape lies in the same place as one of the shape at {}, and light that "
+                        "passes through one of them misses the other",
+                        where(pair.first)),
+            fmt::format("a gap of {:g} of the coordinates is enough, or let the shapes overlap", kGap));
+    }
+
+    // The diagonal of a mesh's box.
+    double size_of(uint32_t geometry) {
+        const auto [known, is_new] = sizes_.try_emplace(geometry, 0.0);
+        if (!is_new) return known->second;
+        dvec3 low(1e300), high(-1e300);
+        for (uint32_t i = 0; i < plane_triangle_count(scene_.geometries[geometry]); ++i)
+            for (const dvec3& p : plane_triangle(scene_, geometry, i).corners)
+                low = glm::min(low, p), high = glm::max(high, p);
+        return known->second = glm::length(high - low);
+    }
+
+    std::string where(uint32_t geometry) const { return context_.description.sources->describe(places_[geometry]); }
+
+    BuildContext& context_;
+    Scene& scene_;
+    const std::vector<Location>& places_;
+    Passing passes_;
+    double object_reach_ = 0.0;  // of the set that is searched; 0: the world
+    size_t pairs_ = 0;
+    std::set<std::pair<uint32_t, uint32_t>> told_;
+    std::map<std::pair<uint32_t, uint32_t>, double> moved_;  // geometry and the one that it touches; the gap
+    std::map<uint32_t, Inset> insets_;
+    std::map<uint32_t, double> sizes_;
+};
+
+}  // namespace
+
+void separate_touching_surfaces(BuildContext& context, const std::vector<Location>& places) {
+    Search search(context, places);
+    for (uint32_t set = 0; set < context.scene.sets.size(); ++set) search.run(set);
+    search.report();
 }
 
 }  // namespace lampyris

@@ -1,0 +1,164 @@
+#include "core/scene/touching_planes.h"
+
+#include <glm/glm.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lampyris {
+
+using glm::dvec2;
+using glm::dvec3;
+
+namespace {
+
+// Of a patch, the triangles on either side of a diagonal.
+constexpr std::array<std::array<uint32_t, 3>, 2> kHalves{{{0, 1, 3}, {0, 3, 2}}};
+
+// Cells of directions are this wide, and normals are known this well.
+constexpr double kCell = 1e-3, kNormalError = 1e-4;
+// Coordinates and what is computed of them, in parts of the largest.
+constexpr double kRounding = 4e-7;
+// Slivers may be turned by more, and are missed.
+constexpr double kMostTurned = 1e-3;
+
+uint64_t hash_of(const std::array<int64_t, 3>& cell) {
+    uint64_t hash = 0xcbf29ce484222325ull;
+    for (const int64_t x : cell) hash = (hash ^ uint64_t(x)) * 0x100000001b3ull, hash ^= hash >> 29;
+    return hash;
+}
+
+dvec3 vector_at(const std::vector<float>& all, size_t index) {
+    return {all[3 * index], all[3 * index + 1], all[3 * index + 2]};
+}
+
+}  // namespace
+
+uint32_t plane_triangle_count(const kernel::GeometryRecord& g) {
+    if (g.kind > kernel::GEOMETRY_BILINEAR) return 0;
+    return g.primitive_count * (g.kind == kernel::GEOMETRY_BILINEAR ? 2 : 1);
+}
+
+PlaneTriangle plane_triangle(const Scene& scene, uint32_t geometry, uint32_t index) {
+    const kernel::GeometryRecord& g = scene.geometries[geometry];
+    const bool patch = g.kind == kernel::GEOMETRY_BILINEAR;
+    const bool smooth = g.first_normal != kernel::NONE;
+    PlaneTriangle t;
+    t.geometry = geometry;
+    dvec3 side(0.0);
+    for (uint32_t k = 0; k < 3; ++k) {
+        const size_t corner = patch ? 4 * size_t(index / 2) + kHalves[index % 2][k] : 3 * size_t(index) + k;
+        const size_t vertex = scene.indices[g.first_index + corner];
+        t.vertices[k] = g.first_vertex + vertex;
+        t.corners[k] = vector_at(scene.positions, t.vertices[k]);
+        if (smooth) side += vector_at(scene.normals, g.first_normal + vertex);
+        for (int axis = 0; axis < 3; ++axis) t.largest = std::max(t.largest, std::abs(t.corners[k][axis]));
+    }
+    const dvec3 n = glm::cross(t.corners[1] - t.corners[0], t.corners[2] - t.corners[0]);
+    const double length = glm::length(n);
+    if (!(length > 0.0)) return t;
+    t.normal = n / length;
+    // A height that is wrong by the rounding of coordinates turns the plane about the triangle, and the origin may be far away.
+    double longest = 0.0;
+    for (size_t k = 0; k < 3; ++k) longest = std::max(longest, glm::distance(t.corners[k], t.corners[(k + 1) % 3]));
+    const double turn_error = std::min(kRounding * t.largest / (length / longest), kMostTurned);
+    t.distance_error = t.largest * (kSamePlane + turn_error);
+    // Kernels turn normals in the same way (triangle_surface, bilinear_fill).
+    const bool turn = smooth ? glm::dot(t.normal, side) < 0.0 : (g.flags & kernel::GEOMETRY_FLIP) != 0u;
+    if (turn) t.normal = -t.normal;
+    return t;
+}
+
+double distance_from_plane(const PlaneTriangle& a, const PlaneTriangle& b) {
+    double largest = 0.0;
+    for (const dvec3& p : b.corners) largest = std::max(largest, std::abs(glm::dot(p - a.corners[0], a.normal)));
+    return largest;
+}
+
+bool in_one_plane(const PlaneTriangle& a, const PlaneTriangle& b) {
+    return distance_from_plane(a, b) <= kSamePlane * std::max(a.largest, b.largest);
+}
+
+// No edge's line separates them.
+bool overlap(const PlaneTriangle& a, const PlaneTriangle& b) {
+    const double error = 1e-5 * std::max(a.largest, b.largest);
+    const dvec3 size = glm::abs(a.normal);
+    const int dropped = size.x > size.y && size.x > size.z ? 0 : (size.y > size.z ? 1 : 2);
+    const auto flat = [&](const dvec3& p) { return dvec2(p[(dropped + 1) % 3], p[(dropped + 2) % 3]); };
+    for (const PlaneTriangle* edges : {&a, &b}) {
+        for (int i = 0; i < 3; ++i) {
+            const dvec2 from = flat(edges->corners[size_t(i)]), to = flat(edges->corners[size_t((i + 1) % 3)]);
+            const dvec2 across = glm::normalize(dvec2(to.y - from.y, from.x - to.x));
+            double a_low = 1e300, a_high = -1e300, b_low = 1e300, b_high = -1e300;
+            for (const dvec3& p : a.corners) {
+                const double x = glm::dot(flat(p) - from, across);
+                a_low = std::min(a_low, x), a_high = std::max(a_high, x);
+            }
+            for (const dvec3& p : b.corners) {
+                const double x = glm::dot(flat(p) - from, across);
+                b_low = std::min(b_low, x), b_high = std::max(b_high, x);
+            }
+            if (!(std::min(a_high, b_high) - std::max(a_low, b_low) > error)) return false;
+        }
+    }
+    return true;
+}
+
+// Normals of surfaces are seldom perpendicular to this direction, where rounding would choose between the two.
+Plane::Plane(const PlaneTriangle& t) : normal(t.normal) {
+    if (glm::dot(normal, dvec3(0.8713, 0.4331, 0.2317)) < 0.0) normal = -normal;
+    distance = glm::dot(t.corners[0], normal);
+}
+
+uint64_t Plane::cell() const {
+    std::array<int64_t, 3> cell{};
+    for (int axis = 0; axis < 3; ++axis) cell[size_t(axis)] = int64_t(std::floor(normal[axis] / kCell + 0.5));
+    return hash_of(cell);
+}
+
+std::vector<uint64_t> Plane::cells() const {
+    std::vector<uint64_t> all;
+    for (int corner = 0; corner < 8; ++corner) {
+        std::array<int64_t, 3> cell{};
+        for (int axis = 0; axis < 3; ++axis) {
+            const double moved = normal[axis] + ((corner >> axis & 1) != 0 ? kNormalError : -kNormalError);
+            cell[size_t(axis)] = int64_t(std::floor(moved / kCell + 0.5));
+        }
+        const uint64_t hash = hash_of(cell);
+        if (std::find(all.begin(), all.end(), hash) == all.end()) all.push_back(hash);
+    }
+    return all;
+}
+
+void TrianglesByPlane::add(const PlaneTriangle& t) {
+    const Plane plane(t);
+    std::vector<Group>& groups = by_cell_[plane.cell()];
+    if (groups.empty() || groups.back().geometry != t.geometry) groups.push_back({t.geometry, {}, 0.0});
+    Group& group = groups.back();
+    group.entries.push_back({plane.distance, t});
+    group.error = std::max(group.error, t.distance_error);
+}
+
+void TrianglesByPlane::sort() {
+    for (auto& [cell, groups] : by_cell_)
+        for (Group& group : groups)
+            std::stable_sort(group.entries.begin(), group.entries.end(),
+                             [](const Entry& a, const Entry& b) { return a.distance < b.distance; });
+}
+
+void PlaneSet::add(const PlaneTriangle& t) {
+    const Plane plane(t);
+    for (const uint64_t cell : plane.cells()) by_cell_[cell].insert(plane.distance);
+    error_ = std::max(error_, t.distance_error);
+}
+
+bool PlaneSet::contains(const PlaneTriangle& t) const {
+    const Plane plane(t);
+    const auto found = by_cell_.find(plane.cell());
+    if (found == by_cell_.end()) return false;
+    const double error = t.distance_error + error_;
+    const auto next = found->second.lower_bound(plane.distance - error);
+    return next != found->second.end() && *next <= plane.distance + error;
+}
+
+}  // namespace lampyris
