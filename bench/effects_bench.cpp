@@ -30,7 +30,7 @@ int run(const std::string& file, int width, int height, uint32_t samples, bool e
     options.resolution = {width, height};
     const LoadedScene loaded = load_scene(SceneSource::of_file(file), options, false);
     const Scene& scene = loaded.scene;
-    const CpuScene cpu(scene, CpuTracerKind::embree);
+    const CpuScene cpu(scene, CpuTracerKind::embree, true);
     PathParams params;
     const IntegratorFactory& factory = integrators().require("path");
     set_defaults(&params, factory.fields);
