@@ -71,8 +71,13 @@ class CpuBuffer final : public Buffer {
         ::operator delete(data_, std::align_val_t(64));
     }
     size_t size() const override { return size_; }
-    void upload(const void* data, size_t bytes, size_t offset) override { std::memcpy(data_ + offset, data, bytes); }
-    void download(void* data, size_t bytes, size_t offset) const override { std::memcpy(data, data_ + offset, bytes); }
+    // Of no bytes, there may be no data: memcpy must not be handed a null pointer.
+    void upload(const void* data, size_t bytes, size_t offset) override {
+        if (bytes > 0) std::memcpy(data_ + offset, data, bytes);
+    }
+    void download(void* data, size_t bytes, size_t offset) const override {
+        if (bytes > 0) std::memcpy(data, data_ + offset, bytes);
+    }
     void fill_zero() override { std::memset(data_, 0, size_); }
     void* data() { return data_; }
 
