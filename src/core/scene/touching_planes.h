@@ -30,7 +30,7 @@ struct PlaneTriangle {
     uint32_t geometry = 0;
 };
 
-// The number of PlaneTriangles of a geometry: none of quadrics.
+// How many triangles a geometry has here: none if it is a quadric.
 uint32_t plane_triangle_count(const kernel::GeometryRecord& g);
 PlaneTriangle plane_triangle(const Scene& scene, uint32_t geometry, uint32_t index);
 
