@@ -1,7 +1,10 @@
 """lampyris bench photon-maps: the keys that scripts rely on."""
 
 import json
+import os
+import shlex
 import subprocess
+from pathlib import Path
 
 import pytest
 
@@ -75,3 +78,18 @@ def test_errors_say_what_is_valid(run):
         result = run("bench", "photon-maps", *arguments)
         assert result.returncode == 1
         assert message in result.stderr + result.stdout
+
+
+def test_benches_outside_of_all_compile(source_dir):
+    """They are built when somebody measures, so that nothing else notices when what they call has changed."""
+    commands = json.loads((Path(os.environ["LAMPYRIS_BUILD_DIR"]) / "compile_commands.json").read_text())
+    benches = [one for one in commands if Path(one["file"]).match(f"{source_dir}/bench/*_bench.cpp")]
+    if not benches:
+        pytest.skip("the tree was configured without Google Benchmark")
+    for one in benches:
+        words = shlex.split(one["command"])
+        words = [word for word in words if word not in ("-c", words[words.index("-o") + 1], "-o")]
+        done = subprocess.run(
+            [*words, "-fsyntax-only"], cwd=one["directory"], capture_output=True, text=True, check=False
+        )
+        assert done.returncode == 0, done.stderr
