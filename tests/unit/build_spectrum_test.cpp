@@ -1,10 +1,15 @@
 // Spectra to linear Rec.709.
 #include "core/scene/spectrum.h"
 
+#include "support/build_text.h"
+
+#include <fmt/format.h>
 #include <glm/glm.hpp>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 namespace lampyris {
 namespace {
@@ -74,6 +79,43 @@ TEST(Spectrum, MetalsReflectTheirColour) {
         for (int c = 0; c < 3; ++c)
             EXPECT_NEAR(reflectance(rgb.eta[c], rgb.k[c]), wanted[c], 1e-4f) << metal << " channel " << c;
     }
+}
+
+// Results are remembered for spectra that are equal in all numbers, and for no others, however many there are.
+TEST(Spectrum, RememberedOnesAreThoseComputed) {
+    const auto colours = [] {
+        std::string world;
+        for (int i = 0; i < 600; ++i)
+            world += fmt::format("LightSource \"point\" \"blackbody I\" {}\n", 1000 + 10 * i) +
+                     fmt::format(
+                         "Material \"conductor\" \"spectrum eta\" [ 360 {0} 830 1 ] \"spectrum k\" [ 360 3 830 {1} ]\n"
+                         "Shape \"sphere\"\nMaterial \"diffuse\" \"spectrum reflectance\" [ 400 {2} 700 .5 ]\n"
+                         "Shape \"sphere\"\n",
+                         0.1 + 0.001 * i, 3.0 + 0.001 * i, 0.001 * i);
+        const BuiltText built = build_world(world);
+        EXPECT_EQ(built.all_errors(), "");
+        std::vector<glm::vec3> all;
+        for (const kernel::LightRecord& light : built.scene().lights) all.push_back(rgb_of(light.emission));
+        for (const kernel::MaterialRecord& material : built.scene().materials) {
+            all.push_back(rgb_of(material.color0));
+            all.push_back(rgb_of(material.color1));
+        }
+        return all;
+    };
+    const std::vector<glm::vec3> first = colours();
+    EXPECT_GE(first.size(), 3000u);
+    EXPECT_EQ(first, colours());
+    // Each differs from the next one in its red part: 600 lights, then pairs of materials.
+    for (size_t i = 1; i < 600; ++i) EXPECT_NE(first[i].x, first[i - 1].x) << i;
+    const auto at = [](float w) { return blackbody(w, 6990.0f); };
+    const SampledSpectrum sampled = [&] {
+        SampledSpectrum s;
+        for (float w = kFirstWavelength; w <= kLastWavelength; w += 5.0f)
+            s.wavelengths.push_back(w), s.values.push_back(at(w));
+        return s;
+    }();
+    const glm::vec3 expected = light_rgb([&](float w) { return sampled.at(w); });
+    EXPECT_EQ(first[599], expected);
 }
 
 TEST(Spectrum, GlassHasItsCatalogueIndex) {

@@ -43,6 +43,13 @@ float SampledSpectrum::at(float wavelength) const {
     return (1.0f - t) * values[next - 1] + t * values[next];
 }
 
+std::string SampledSpectrum::bytes() const {
+    std::string all = std::to_string(values.size()) + ":";
+    for (const std::vector<float>* numbers : {&wavelengths, &values})
+        all.append(reinterpret_cast<const char*>(numbers->data()), numbers->size() * sizeof(float));
+    return all;
+}
+
 glm::vec3 rec709_from_xyz(glm::vec3 xyz) {
     static const glm::dmat3 matrix = glm::inverse(xyz_from_rgb(kRec709));
     return glm::vec3(matrix * glm::dvec3(xyz));

@@ -29,6 +29,8 @@ enum class SpectrumUse {
 struct SampledSpectrum {
     std::vector<float> wavelengths, values;
     float at(float wavelength) const;
+    // All of it, as a key: unlike floats, bytes are equal to themselves whatever they mean.
+    std::string bytes() const;
 };
 
 inline constexpr float kFirstWavelength = 360.0f, kLastWavelength = 830.0f;

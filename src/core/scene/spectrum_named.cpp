@@ -1,5 +1,7 @@
 // The spectra that pbrt-v4 knows by name, and the colour of metals.
 #include "core/scene/spectrum.h"
+
+#include "core/base/memo.h"
 #include "core/scene/spectrum_metals.h"
 
 #include <glm/glm.hpp>
@@ -88,11 +90,13 @@ std::vector<std::string> named_spectra() {
     return names;
 }
 
+namespace {
+
 // A metal per channel. The visible property of a metal is its reflectance, so the reflectance at normal incidence is computed
 // for every wavelength and converted to a colour, R. eta is the mean under the positive part of the channel's sensitivity to
 // white light, and k follows from R = ((eta - 1)^2 + k^2) / ((eta + 1)^2 + k^2). So at normal incidence the colour is that of
 // the spectrum (as far as Rec.709 and R < 1 can show it), and at grazing angles it still goes to white.
-ConductorRgb conductor_rgb(const SampledSpectrum& eta, const SampledSpectrum& k) {
+ConductorRgb integrate_conductor(const SampledSpectrum& eta, const SampledSpectrum& k) {
     const auto held = [](const SampledSpectrum& spectrum, float w) {  // the values at its ends continue beyond them
         return spectrum.at(std::clamp(w, spectrum.wavelengths.front(), spectrum.wavelengths.back()));
     };
@@ -122,6 +126,14 @@ ConductorRgb conductor_rgb(const SampledSpectrum& eta, const SampledSpectrum& k)
         rgb.k[c] = float(std::sqrt((r * (n + 1.0) * (n + 1.0) - (n - 1.0) * (n - 1.0)) / (1.0 - r)));
     }
     return rgb;
+}
+
+}  // namespace
+
+// An exporter writes the same metal for each of its objects.
+ConductorRgb conductor_rgb(const SampledSpectrum& eta, const SampledSpectrum& k) {
+    static Memo<std::string, ConductorRgb> memo(256);
+    return memo.get(eta.bytes() + k.bytes(), [&] { return integrate_conductor(eta, k); });
 }
 
 }  // namespace lampyris

@@ -1,6 +1,8 @@
 // Parameters of type rgb, blackbody and spectrum as linear Rec.709.
 #include "core/scene/spectrum.h"
 
+#include "core/base/memo.h"
+
 #include <fmt/format.h>
 #include <glm/glm.hpp>
 
@@ -87,6 +89,29 @@ std::optional<glm::vec3> rgb_value(const Parameter& parameter, SpectrumUse use, 
     return glm::max(rec709_from(parameter.color_space, rgb, use), glm::vec3(0.0f));
 }
 
+// A scene repeats few spectra many times.
+constexpr size_t kRemembered = 256;
+
+SampledSpectrum blackbody_spectrum(float kelvin) {
+    static Memo<float, SampledSpectrum> memo(kRemembered);
+    return memo.get(kelvin, [&] {
+        SampledSpectrum spectrum;
+        for (float w = kFirstWavelength; w <= kLastWavelength; w += 5.0f) {
+            spectrum.wavelengths.push_back(w);
+            spectrum.values.push_back(blackbody(w, kelvin));
+        }
+        return spectrum;
+    });
+}
+
+glm::vec3 rgb_of_spectrum(const SampledSpectrum& spectrum, bool light) {
+    static Memo<std::string, glm::vec3> memo(kRemembered);
+    const auto at = [&](float wavelength) { return spectrum.at(wavelength); };
+    // Colours are at most slightly outside of Rec.709's gamut; negative components become zero.
+    return memo.get((light ? 'l' : 'r') + spectrum.bytes(),
+                    [&] { return glm::max(light ? light_rgb(at) : reflectance_rgb(at), glm::vec3(0.0f)); });
+}
+
 }  // namespace
 
 std::optional<SampledSpectrum> sampled_spectrum(const Parameter& parameter, const SceneFolder& folder,
@@ -98,12 +123,7 @@ std::optional<SampledSpectrum> sampled_spectrum(const Parameter& parameter, cons
                 diagnostics.error(where, fmt::format("\"{}\" must be one temperature above 0 K", parameter.name));
                 return {};
             }
-            SampledSpectrum spectrum;
-            for (float w = kFirstWavelength; w <= kLastWavelength; w += 5.0f) {
-                spectrum.wavelengths.push_back(w);
-                spectrum.values.push_back(blackbody(w, (*numbers)[0]));
-            }
-            return spectrum;
+            return blackbody_spectrum((*numbers)[0]);
         }
         return from_pairs(*numbers, where, fmt::format("spectrum \"{}\"", parameter.name), diagnostics);
     }
@@ -144,9 +164,7 @@ std::optional<glm::vec3> spectrum_rgb(const Parameter& parameter, SpectrumUse us
                             "they are taken for 0");
         for (float& value : spectrum->values) value = std::max(value, 0.0f);
     }
-    const auto at = [&](float wavelength) { return spectrum->at(wavelength); };
-    // Colours are at most slightly outside of Rec.709's gamut; negative components become zero.
-    const glm::vec3 rgb = glm::max(use == SpectrumUse::kLight ? light_rgb(at) : reflectance_rgb(at), glm::vec3(0.0f));
+    const glm::vec3 rgb = rgb_of_spectrum(*spectrum, use == SpectrumUse::kLight);
     return use == SpectrumUse::kAlbedo ? glm::min(rgb, glm::vec3(1.0f)) : rgb;
 }
 
