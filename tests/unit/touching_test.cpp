@@ -130,6 +130,14 @@ TEST(Touching, OnlyWarnsWhereMovingWouldNotBeRight) {
     EXPECT_EQ(told_of(moved("0 0 0", kGlass) + moved("0 0 0", kGlass)), kWarned);
     // A lamp's samples are taken on its shape as it was.
     EXPECT_EQ(told_of(moved("0 0 0", kWood) + "AreaLightSource \"diffuse\"\n" + moved("0 1 0", kGlass)), kWarned);
+    // As small as that, on a floor so wide that its rounding hides the gap.
+    const std::string floor =
+        "Material \"diffuse\" Shape \"trianglemesh\" \"point3 P\" [ -1e4 0 -1e4 -1e4 0 1e4 1e4 0 1e4 1e4 0 -1e4 ] "
+        "\"integer indices\" [ 0 1 2 0 2 3 ]\n";
+    for (const char* size : {"0.001", "0.02", "1"})
+        EXPECT_EQ(told_of(floor + "Scale " + size + " " + size + " " + size + "\n" + moved("0.2 0 0.1", kGlass)),
+                  kWarned)
+            << size;
     // So far out that the gap would be a thirtieth of the body.
     EXPECT_EQ(told_of(moved("0 0 0", kWood) + moved("20000 0 0", kWood) + moved("20000 1 0", kGlass)), kWarned);
 }
@@ -198,6 +206,22 @@ TEST(Touching, TakesNoTimeForManyTrianglesInAPlane) {
     EXPECT_EQ(warnings_of(glass + grid(300) + moved("0 0 1", "\"diffuse\"")), 0u);
     EXPECT_EQ(warnings_of(glass + grid(100) + "Translate 1000 0 0\n" + grid(100)), 0u);
     EXPECT_EQ(warnings_of(glass + grid(100) + grid(100)), 1u);
+    EXPECT_LT(double(std::clock() - before) / CLOCKS_PER_SEC, 10.0);
+}
+
+// Boxes of glass side by side, so far apart.
+std::string boxes(int n, double distance) {
+    std::string all;
+    for (int i = 0; i < n; ++i)
+        for (int k = 0; k < n; ++k) all += moved(fmt::format("{} {} 0", distance * i, distance * k), kGlass);
+    return all;
+}
+
+// With so many shapes in few planes, comparing each triangle with those of its plane would take minutes.
+TEST(Touching, TakesNoTimeForManyShapes) {
+    const std::clock_t before = std::clock();
+    EXPECT_EQ(told_of(boxes(60, 1.5)), kNothing);
+    EXPECT_EQ(told_of(boxes(60, 1.0)), (Told{0, 10}));  // and a line about the others
     EXPECT_LT(double(std::clock() - before) / CLOCKS_PER_SEC, 10.0);
 }
 

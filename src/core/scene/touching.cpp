@@ -68,8 +68,8 @@ std::string quadric_key(const Scene& scene, const kernel::GeometryRecord& g) {
 }
 
 constexpr size_t kMostMessages = 10;
-// Planes with very many triangles would take too long.
-constexpr size_t kMostPairs = 2'000'000;
+// Thousands of shapes in one place would take too long.
+constexpr size_t kMostPairs = 20'000'000;
 
 // Faces that touch are moved apart by this part of the coordinates.
 constexpr double kGap = 3e-6;
@@ -158,24 +158,22 @@ class Search {
         const GeometrySet& set = scene_.sets[set_index];
         if (set.geometry_count < 2) return;
         equal_quadrics(set);
-        TrianglesByPlane passing;
+        TriangleTree passing;
         double largest = 0.0;
-        for_each_triangle(set, [&](const PlaneTriangle& t) {
+        for_each_triangle(set, [&](const PlaneTriangle& t, uint32_t index) {
             largest = std::max(largest, t.largest);
-            if (passes_(scene_.geometries[t.geometry])) passing.add(t);
+            if (passes_(scene_.geometries[t.geometry])) passing.add(t, index);
         });
         if (passing.empty()) return;
-        passing.sort();
+        passing.build();
         object_reach_ = set_index == 0 ? 0.0 : reach_of_object(scene_, set_index, largest);
-        for_each_triangle(set, [&](const PlaneTriangle& t) {
-            const auto wanted = [&](uint32_t g) {
-                return g != t.geometry && !told_.contains(std::minmax(t.geometry, g));
-            };
-            passing.near(t, wanted, [&](const PlaneTriangle& other) {
+        for_each_triangle(set, [&](const PlaneTriangle& t, uint32_t) {
+            passing.near(t, [&](uint32_t geometry, uint32_t index) {
                 if (++pairs_ > kMostPairs) return false;
-                if (!in_one_plane(other, t) || !overlap(other, t)) return true;
-                touch(t, other);
-                return false;
+                if (told_.contains(std::minmax(t.geometry, geometry))) return true;
+                const PlaneTriangle other = plane_triangle(scene_, geometry, index);
+                if (in_one_plane(other, t) && overlap(other, t)) touch(t, other);
+                return true;
             });
         });
         for (const auto& [geometry, inset] : insets_) inset.apply(scene_, geometry);
@@ -193,6 +191,9 @@ class Search {
                 where(pair.first), where(pair.second), gap));
         }
         if (left > 0) scene_.notes.push_back(fmt::format("{} more shapes touch, and are moved as well", left));
+        if (pairs_ > kMostPairs)
+            scene_.notes.push_back(
+                "not all shapes were looked at for faces in the same place: there are too many of them");
     }
 
  private:
@@ -201,7 +202,7 @@ class Search {
         for (uint32_t g = set.first_geometry; g < set.first_geometry + set.geometry_count; ++g)
             for (uint32_t i = 0; i < plane_triangle_count(scene_.geometries[g]); ++i) {
                 const PlaneTriangle t = plane_triangle(scene_, g, i);
-                if (t.normal != dvec3(0.0)) visit(t);
+                if (t.normal != dvec3(0.0)) visit(t, i);
             }
     }
 

@@ -81,7 +81,8 @@ bool in_one_plane(const PlaneTriangle& a, const PlaneTriangle& b) {
 
 // No edge's line separates them.
 bool overlap(const PlaneTriangle& a, const PlaneTriangle& b) {
-    const double error = 1e-5 * std::max(a.largest, b.largest);
+    // Of a small face on a large one, the small one's own rounding counts.
+    const double error = 1e-5 * std::min(a.largest, b.largest);
     const dvec3 size = glm::abs(a.normal);
     const int dropped = size.x > size.y && size.x > size.z ? 0 : (size.y > size.z ? 1 : 2);
     const auto flat = [&](const dvec3& p) { return dvec2(p[(dropped + 1) % 3], p[(dropped + 2) % 3]); };
@@ -130,20 +131,47 @@ std::vector<uint64_t> Plane::cells() const {
     return all;
 }
 
-void TrianglesByPlane::add(const PlaneTriangle& t) {
-    const Plane plane(t);
-    std::vector<Group>& groups = by_cell_[plane.cell()];
-    if (groups.empty() || groups.back().geometry != t.geometry) groups.push_back({t.geometry, {}, 0.0});
-    Group& group = groups.back();
-    group.entries.push_back({plane.distance, t});
-    group.error = std::max(group.error, t.distance_error);
+TriangleTree::Box::Box(const PlaneTriangle& t) : low(t.corners[0]), high(t.corners[0]) {
+    for (const dvec3& p : t.corners) low = glm::min(low, glm::vec3(p)), high = glm::max(high, glm::vec3(p));
+    const float margin = float((kSamePlane + kRounding) * t.largest);
+    low -= margin, high += margin;
 }
 
-void TrianglesByPlane::sort() {
-    for (auto& [cell, groups] : by_cell_)
-        for (Group& group : groups)
-            std::stable_sort(group.entries.begin(), group.entries.end(),
-                             [](const Entry& a, const Entry& b) { return a.distance < b.distance; });
+bool TriangleTree::Box::meets(const Box& other) const {
+    return low.x <= other.high.x && other.low.x <= high.x && low.y <= other.high.y && other.low.y <= high.y &&
+           low.z <= other.high.z && other.low.z <= high.z;
+}
+
+void TriangleTree::Box::add(const Box& other) { low = glm::min(low, other.low), high = glm::max(high, other.high); }
+
+void TriangleTree::add(const PlaneTriangle& t, uint32_t index) { entries_.push_back({Box(t), t.geometry, index}); }
+
+void TriangleTree::build() {
+    nodes_.reserve(entries_.size());
+    if (!entries_.empty()) build(0, entries_.size());
+}
+
+uint32_t TriangleTree::build(size_t first, size_t count) {
+    constexpr size_t kLeaf = 4;
+    const auto begin = entries_.begin() + ptrdiff_t(first), end = begin + ptrdiff_t(count);
+    Node node{begin->box, begin->geometry, begin->geometry, uint32_t(first), uint32_t(count)};
+    for (auto entry = begin; entry != end; ++entry) {
+        node.box.add(entry->box);
+        node.lowest = std::min(node.lowest, entry->geometry), node.highest = std::max(node.highest, entry->geometry);
+    }
+    const uint32_t at = uint32_t(nodes_.size());
+    nodes_.push_back(node);
+    if (count <= kLeaf) return at;
+    const glm::vec3 size = node.box.high - node.box.low;
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
+    const size_t half = count / 2;
+    std::nth_element(begin, begin + ptrdiff_t(half), end, [axis](const Entry& a, const Entry& b) {
+        return a.box.low[axis] + a.box.high[axis] < b.box.low[axis] + b.box.high[axis];
+    });
+    nodes_[at].count = 0;
+    build(first, half);
+    nodes_[at].first = build(first + half, count - half);
+    return at;
 }
 
 void PlaneSet::add(const PlaneTriangle& t) {

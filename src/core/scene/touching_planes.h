@@ -5,12 +5,10 @@
 
 #include <glm/vec3.hpp>
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <map>
 #include <set>
-#include <unordered_map>
 #include <vector>
 
 namespace lampyris {
@@ -50,30 +48,52 @@ struct Plane {
     std::vector<uint64_t> cells() const;
 };
 
-// Triangles, to be found by the plane of another one.
-class TrianglesByPlane {
+// Triangles of several geometries, to be found by their place: a tree of boxes.
+class TriangleTree {
  public:
-    // Those of a geometry one after the other. sort() comes after the last.
-    void add(const PlaneTriangle& t);
-    void sort();
-    bool empty() const { return by_cell_.empty(); }
+    void add(const PlaneTriangle& t, uint32_t index);
+    void build();  // after the last one
+    bool empty() const { return entries_.empty(); }
 
-    // Calls visit(triangle) for those that may lie in the plane of t; geometries for which wanted(geometry) is false are left out.
-    // Stops with a geometry where `visit` returns false.
-    template <typename Wanted, typename Visit>
-    void near(const PlaneTriangle& t, const Wanted& wanted, const Visit& visit) const;
+    // Calls visit(geometry, index) for the triangles of other geometries whose boxes are near that of t. Stops where it returns false.
+    template <typename Visit>
+    bool near(const PlaneTriangle& t, const Visit& visit) const {
+        return entries_.empty() || near(0, Box(t), t.geometry, visit);
+    }
 
  private:
+    // Wider than the triangle by what counts as the same place.
+    struct Box {
+        glm::vec3 low, high;
+        explicit Box(const PlaneTriangle& t);
+        bool meets(const Box& other) const;
+        void add(const Box& other);
+    };
     struct Entry {
-        double distance;
-        PlaneTriangle triangle;
+        Box box;
+        uint32_t geometry, index;
     };
-    struct Group {
-        uint32_t geometry;
-        std::vector<Entry> entries;  // by distance
-        double error = 0.0;          // largest of theirs
+    struct Node {
+        Box box;
+        uint32_t lowest, highest;  // of its geometries
+        uint32_t first, count;     // entries; count = 0: the children are the next node and `first`
     };
-    std::unordered_map<uint64_t, std::vector<Group>> by_cell_;
+    uint32_t build(size_t first, size_t count);
+
+    template <typename Visit>
+    bool near(uint32_t at, const Box& box, uint32_t geometry, const Visit& visit) const {
+        const Node& node = nodes_[at];
+        if (!node.box.meets(box) || (node.lowest == geometry && node.highest == geometry)) return true;
+        if (node.count == 0) return near(at + 1, box, geometry, visit) && near(node.first, box, geometry, visit);
+        for (uint32_t i = node.first; i < node.first + node.count; ++i) {
+            const Entry& entry = entries_[i];
+            if (entry.geometry != geometry && entry.box.meets(box) && !visit(entry.geometry, entry.index)) return false;
+        }
+        return true;
+    }
+
+    std::vector<Entry> entries_;
+    std::vector<Node> nodes_;
 };
 
 // Planes of one geometry.
@@ -86,22 +106,5 @@ class PlaneSet {
     std::map<uint64_t, std::set<double>> by_cell_;
     double error_ = 0.0;  // largest of its triangles'
 };
-
-template <typename Wanted, typename Visit>
-void TrianglesByPlane::near(const PlaneTriangle& t, const Wanted& wanted, const Visit& visit) const {
-    const Plane plane(t);
-    for (const uint64_t cell : plane.cells()) {
-        const auto found = by_cell_.find(cell);
-        if (found == by_cell_.end()) continue;
-        for (const Group& group : found->second) {
-            if (!wanted(group.geometry)) continue;
-            const double error = t.distance_error + group.error;
-            auto entry = std::lower_bound(group.entries.begin(), group.entries.end(), plane.distance - error,
-                                          [](const Entry& e, double d) { return e.distance < d; });
-            for (; entry != group.entries.end() && entry->distance <= plane.distance + error; ++entry)
-                if (!visit(entry->triangle)) break;
-        }
-    }
-}
 
 }  // namespace lampyris
