@@ -81,16 +81,27 @@ double mean_irradiance(double intensity, double height, double half) {
     return intensity * angle / (4.0 * half * half);
 }
 
-// A box of glass from (-2, low, -2) to (2, high, 2).
-std::string slab(double low, double high) {
+// Corners of a box from (-2, low, -2) to (2, high, 2), and its triangles with the first corner's number.
+std::string slab_corners(double low, double high) {
     return fmt::format(
-        "Shape \"trianglemesh\" \"point3 P\" [ -2 {0:.9g} -2 2 {0:.9g} -2 2 {0:.9g} 2 -2 {0:.9g} 2 -2 {1:.9g} -2 2 "
-        "{1:.9g} -2 2 "
-        "{1:.9g} 2 -2 {1:.9g} 2 ] \"integer indices\" [ 0 1 2 0 2 3  4 6 5 4 7 6  0 5 1 0 4 5  1 6 2 1 5 6  2 7 3 2 6 "
-        "7  3 4 0 3 7 "
-        "4 ]\n",
-        low, high);
+        " -2 {0:.9g} -2 2 {0:.9g} -2 2 {0:.9g} 2 -2 {0:.9g} 2 -2 {1:.9g} -2 2 {1:.9g} -2 2 {1:.9g} 2 -2 {1:.9g} 2", low,
+        high);
 }
+std::string slab_triangles(int first) {
+    std::string all;
+    for (const int corner :
+         {0, 1, 2, 0, 2, 3, 4, 6, 5, 4, 7, 6, 0, 5, 1, 0, 4, 5, 1, 6, 2, 1, 5, 6, 2, 7, 3, 2, 6, 7, 3, 4, 0, 3, 7, 4})
+        all += fmt::format(" {}", first + corner);
+    return all;
+}
+std::string mesh(const std::string& corners, const std::string& triangles) {
+    return "Shape \"trianglemesh\" \"point3 P\" [" + corners + " ] \"integer indices\" [" + triangles + " ]\n";
+}
+
+std::string slab(double low, double high) { return mesh(slab_corners(low, high), slab_triangles(0)); }
+
+// Below and above the height 1.
+std::string two_slabs() { return mesh(slab_corners(0, 1) + slab_corners(1, 2), slab_triangles(0) + slab_triangles(8)); }
 
 // A square [-1, 1]^2 of needles that meet in one corner: their angles are 3e-3 and less.
 std::string needles(int count) {
@@ -147,6 +158,17 @@ std::vector<HardCase> make_cases() {
                      16,
                      "maxdepth=100,rrdepth=100",
                      {"path", "bdpt"}});
+    // The same where the surfaces are in one mesh, or on a disk, or in instances of objects.
+    const auto lies = [&](const std::string& name, const std::string& world) {
+        cases.push_back(
+            {name, view(0.7, 5) + sky(1) + world, 1.0, 1e-4, 16, "maxdepth=100,rrdepth=100", {"path", "bdpt"}});
+    };
+    lies("two slabs in one mesh, face on face", glass(1.5) + two_slabs());
+    lies("a slab of glass on a disk of albedo 1",
+         glass(1.5) + slab(0, 1) + diffuse(1) + "Rotate -90 1 0 0 Shape \"disk\" \"float radius\" 4\n");
+    lies("a slab of glass that is an instance, on a floor of albedo 1 and on another one",
+         "ObjectBegin \"slab\"\n" + glass(1.5) + slab(0, 1) + "ObjectEnd\n" + diffuse(1) + floor(3) +
+             "ObjectInstance \"slab\" Translate 0 1 0 ObjectInstance \"slab\"\n");
     // A rod of glass whose far end shines: all light is reflected totally, up to 170 times. Of 250 lengths of paths, mlt tries each
     // rarely.
     cases.push_back(

@@ -152,6 +152,122 @@ TEST(Touching, LeavesAGapForEveryInstance) {
     EXPECT_LT(bounds(built, 1)[0].y, 1.0f + 200 * 3e-6f);
 }
 
+// Corners and triangles of one box after another, as one mesh; with a vertex for each corner of each triangle, or welded where
+// corners coincide.
+enum class Vertices { kOfEachBox, kOfEachTriangle, kWelded };
+std::string one_mesh(const std::vector<glm::vec3>& boxes, Vertices vertices) {
+    constexpr int kCorners[36] = {0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4,
+                                  1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7};
+    std::vector<glm::vec3> points;
+    std::string indices;
+    for (const glm::vec3& at : boxes) {
+        const size_t first = points.size();
+        if (vertices == Vertices::kOfEachBox)
+            for (int k = 0; k < 8; ++k) points.push_back(at + glm::vec3((k & 1) ^ (k >> 1 & 1), k >> 1 & 1, k >> 2));
+        for (const int k : kCorners) {
+            const glm::vec3 p = at + glm::vec3((k & 1) ^ (k >> 1 & 1), k >> 1 & 1, k >> 2);
+            size_t index = first + size_t(k);
+            if (vertices != Vertices::kOfEachBox) {
+                index = points.size();
+                if (vertices == Vertices::kWelded)
+                    index = size_t(std::find(points.begin(), points.end(), p) - points.begin());
+                if (index == points.size()) points.push_back(p);
+            }
+            indices += fmt::format(" {}", index);
+        }
+    }
+    std::string text;
+    for (const glm::vec3& p : points) text += fmt::format(" {} {} {}", p.x, p.y, p.z);
+    return "Shape \"trianglemesh\" \"point3 P\" [" + text + " ] \"integer indices\" [" + indices + " ]\n";
+}
+
+// Heights of a mesh's vertices, without those of its first `skipped` triangles.
+std::vector<float> heights(const BuiltText& built, uint32_t skipped) {
+    std::vector<float> all;
+    const Scene& scene = built.scene();
+    const kernel::GeometryRecord& g = scene.geometries[0];
+    for (uint32_t i = 3 * skipped; i < 3 * g.primitive_count; ++i)
+        all.push_back(scene.positions[3 * size_t(g.first_vertex + scene.indices[g.first_index + i]) + 1]);
+    return all;
+}
+
+// The later body is moved, as a whole: none of its vertices stays in the plane. The first one keeps its shape.
+TEST(Touching, MovesBodiesOfOneMeshApart) {
+    const std::string glass = "Material " + kGlass + "\n";
+    for (const Vertices vertices : {Vertices::kOfEachBox, Vertices::kOfEachTriangle})
+        for (const glm::vec3 second : {glm::vec3(0, 1, 0), glm::vec3(0.25f, 1, 0.25f), glm::vec3(0.5f, 1, 0)}) {
+            const BuiltText built = build_world(glass + one_mesh({glm::vec3(0.0f), second}, vertices));
+            ASSERT_EQ(told_of(built), kMoved);
+            EXPECT_NE(built.scene().notes[0].find("a face lies on another one of it"), std::string::npos);
+            for (const float y : heights(built, 12)) EXPECT_TRUE(y == 2.0f || (y > 1.0000027f && y < 1.0000131f)) << y;
+            size_t below = 0;
+            for (const float y : heights(built, 0)) below += y == 0.0f || y == 1.0f;
+            EXPECT_EQ(below, 36u);
+        }
+    // Three of them, and one beside.
+    EXPECT_EQ(told_of(glass + one_mesh({{0, 0, 0}, {0, 1, 0}, {0, 2, 0}, {5, 0, 0}}, Vertices::kOfEachBox)), kMoved);
+    EXPECT_EQ(told_of(glass + one_mesh({{0, 0, 0}, {2, 0, 0}, {0, 1.5f, 0}}, Vertices::kOfEachBox)), kNothing);
+    // Edges in common, but no face.
+    for (const Vertices vertices : {Vertices::kOfEachBox, Vertices::kOfEachTriangle, Vertices::kWelded})
+        EXPECT_EQ(told_of(glass + one_mesh({{0, 0, 0}, {1, 1, 0}}, vertices)), kNothing);
+    // Where vertices are shared, they cannot be moved apart; of a body that is there twice, nobody knows what is inside.
+    EXPECT_EQ(told_of(glass + one_mesh({{0, 0, 0}, {0, 1, 0}}, Vertices::kWelded)), kWarned);
+    EXPECT_EQ(told_of(glass + one_mesh({{0, 0, 0}, {0, 0, 0}}, Vertices::kOfEachBox)), kWarned);
+    EXPECT_EQ(told_of("Material " + kWood + "\n" + one_mesh({{0, 0, 0}, {0, 1, 0}}, Vertices::kOfEachBox)), kNothing);
+}
+
+TEST(Touching, ConcernsDisks) {
+    const std::string disk = "AttributeBegin Rotate -90 1 0 0 Shape \"disk\" \"float radius\" 3 AttributeEnd\n";
+    const BuiltText built = build_world("Material " + kWood + "\n" + disk + moved("0 0 0", kGlass));
+    ASSERT_EQ(told_of(built), kMoved);
+    EXPECT_GT(bounds(built, 1)[0].y, 2.7e-6f);
+    EXPECT_EQ(told_of("Material " + kWood + "\n" + disk + moved("0 1e-4 0", kGlass)), kNothing);
+    EXPECT_EQ(told_of("Material " + kWood + "\n" + disk + moved("3 0 0", kGlass)), kNothing);
+    // A disk of glass is no body.
+    EXPECT_EQ(told_of("Material " + kGlass + "\n" + disk + moved("0 -1 0", kWood)), kWarned);
+    // Below the hole of a ring, or where a part of a disk is missing.
+    const auto part = [&](const std::string& parameters) {
+        return "AttributeBegin Rotate -90 1 0 0 Shape \"disk\" \"float radius\" 3 " + parameters + " AttributeEnd\n";
+    };
+    EXPECT_EQ(told_of(part("\"float innerradius\" 2") + moved("0 0 0", kGlass)), kNothing);
+    EXPECT_EQ(told_of(part("\"float innerradius\" 1.2") + moved("0 0 0", kGlass)), kMoved);
+    EXPECT_EQ(told_of(part("\"float phimax\" 80") + moved("0.1 0 0.1", kGlass)), kNothing);
+    EXPECT_EQ(told_of(part("\"float phimax\" 80") + moved("0.1 0 -1.1", kGlass)), kMoved);
+}
+
+// Of instances, the face of the object is moved, by its own lengths.
+TEST(Touching, ConcernsInstancesOfDifferentObjects) {
+    const std::string cube = "ObjectBegin \"glass\"\n" + moved("0 0 0", kGlass) + "ObjectEnd\n";
+    const std::string floor = moved("-5 -1 -5", kWood);
+    const std::string wood = "ObjectBegin \"wood\"\n" + moved("0 0 0", kWood) + "ObjectEnd\n";
+    const auto instance = [](const std::string& transform, const std::string& name = "glass") {
+        return "AttributeBegin " + transform + " ObjectInstance \"" + name + "\" AttributeEnd\n";
+    };
+    const BuiltText built =
+        build_world(cube + "Scale 10 10 10\n" + moved("0 0 0", kWood) + instance("Translate .2 1 .2 Scale .2 .2 .2"));
+    ASSERT_EQ(told_of(built), kMoved);
+    const auto low = [&](const BuiltText& text) {
+        // Objects may come before or after the world's shapes.
+        float y = 1e30f;
+        for (size_t shape = 0; shape < text.scene().geometries.size(); ++shape)
+            if (bounds(text, shape)[0].y != 0.0f) y = std::min(y, bounds(text, shape)[0].y);
+        return y;
+    };
+    EXPECT_GT(low(built), 2.7e-6f * 10 / 2);  // the coordinate is 10, and a length of the object is 2 in the world
+    EXPECT_LT(low(built), 6.1e-6f * 12 / 2);
+    EXPECT_EQ(told_of(cube + floor + instance("Translate -4.5 0 -4.5")), kMoved);
+    EXPECT_EQ(told_of(cube + floor + instance("Translate -4.5 .1 -4.5")), kNothing);
+    EXPECT_EQ(told_of(cube + instance("Translate 3 0 0") + instance("Translate 3 1 0")), kMoved);
+    EXPECT_EQ(told_of(cube + instance("Translate 3 0 0") + instance("Translate 3 1.1 0")), kNothing);
+    EXPECT_EQ(told_of(cube + wood + instance("Translate 3 0 0") + instance("Translate 3 1 0", "wood")), kMoved);
+    EXPECT_EQ(told_of(cube + wood + instance("Translate 3 2 0 Scale 1 -1 1", "wood") + instance("Translate 3 2 0")),
+              kMoved);
+    EXPECT_EQ(told_of(cube + instance("Translate 3 0 0") + instance("Translate 3 0 0")), kWarned);
+    EXPECT_EQ(told_of(wood + instance("Translate 3 0 0", "wood") + instance("Translate 3 1 0", "wood")), kNothing);
+    // Mirrored instances have their outside where the others have it.
+    EXPECT_EQ(told_of(cube + instance("Translate 3 1 0 Scale 1 -1 1") + instance("Translate 3 1 0")), kMoved);
+}
+
 TEST(Touching, IsNotSharingAnEdgeNorAGap) {
     EXPECT_EQ(told_of(moved("0 0 0", kGlass) + moved("0 1 1", kGlass)), kNothing);        // an edge in common
     EXPECT_EQ(told_of(moved("0 0 0", kGlass) + moved("3 1 0", kGlass)), kNothing);        // one plane, apart
@@ -198,12 +314,19 @@ std::string grid(int n) {
     return "Shape \"trianglemesh\" \"point3 P\" [" + points + " ] \"integer indices\" [" + indices + " ]\n";
 }
 
+std::string many_instances(int n) {
+    std::string all;
+    for (int i = 0; i < n; ++i) all += "Translate 0 0 1\nObjectInstance \"o\"\n";
+    return all;
+}
+
 // Each of these has 4 * 10^8 pairs or more in one plane, and would take minutes: of a mesh with itself, none is looked at, and of
 // two meshes only so many.
 TEST(Touching, TakesNoTimeForManyTrianglesInAPlane) {
     const std::string glass = "Material " + kGlass + "\n";
     const std::clock_t before = std::clock();
     EXPECT_EQ(warnings_of(glass + grid(300) + moved("0 0 1", "\"diffuse\"")), 0u);
+    EXPECT_EQ(told_of("ObjectBegin \"o\"\n" + glass + grid(30) + "ObjectEnd\n" + many_instances(5000)), kNothing);
     EXPECT_EQ(warnings_of(glass + grid(100) + "Translate 1000 0 0\n" + grid(100)), 0u);
     EXPECT_EQ(warnings_of(glass + grid(100) + grid(100)), 1u);
     EXPECT_LT(double(std::clock() - before) / CLOCKS_PER_SEC, 10.0);

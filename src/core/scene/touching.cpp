@@ -1,5 +1,6 @@
 #include "core/scene/touching.h"
 
+#include "core/scene/touching_inset.h"
 #include "core/scene/touching_planes.h"
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <tuple>
@@ -32,7 +34,8 @@ class Passing {
     bool is_boundary(const kernel::GeometryRecord& g) const {
         const uint32_t kind = scene_.materials[g.material].kind;
         return (kind == kernel::MATERIAL_DIELECTRIC || kind == kernel::MATERIAL_INTERFACE) &&
-               g.alpha_texture == kNone && g.alpha >= 1.0f && g.first_light == kernel::NONE;
+               g.kind <= kernel::GEOMETRY_BILINEAR && g.alpha_texture == kNone && g.alpha >= 1.0f &&
+               g.first_light == kernel::NONE;
     }
 
  private:
@@ -59,6 +62,21 @@ class Passing {
     std::vector<Answer> known_;
 };
 
+// The box of a box's corners.
+PlaceBox transformed(const PlaceBox& box, const kernel::TransformRecord& t) {
+    PlaceBox world = box;
+    int axis = 0;
+    for (const kernel::vec4& row : {t.to0, t.to1, t.to2}) {
+        const glm::vec3 r(row), a = r * box.low, b = r * box.high;
+        const glm::vec3 low = glm::min(a, b), high = glm::max(a, b);
+        world.low[axis] = low.x + low.y + low.z + row.w, world.high[axis] = high.x + high.y + high.z + row.w;
+        ++axis;
+    }
+    const glm::vec3 largest = glm::max(glm::abs(world.low), glm::abs(world.high));
+    world.add_margin(std::max({largest.x, largest.y, largest.z}));
+    return world;
+}
+
 // Kind, size and place of a sphere, disk or cylinder.
 std::string quadric_key(const Scene& scene, const kernel::GeometryRecord& g) {
     std::string key(reinterpret_cast<const char*>(&g.kind), sizeof g.kind);
@@ -70,6 +88,8 @@ std::string quadric_key(const Scene& scene, const kernel::GeometryRecord& g) {
 constexpr size_t kMostMessages = 10;
 // Thousands of shapes in one place would take too long.
 constexpr size_t kMostPairs = 20'000'000;
+// Triangles that let light pass, of all instances.
+constexpr size_t kMostInInstances = 2'000'000;
 
 // Faces that touch are moved apart by this part of the coordinates.
 constexpr double kGap = 3e-6;
@@ -91,93 +111,70 @@ double reach_of_object(const Scene& scene, uint32_t set, double largest) {
     return most;
 }
 
-// Moves faces of a geometry to its inside.
-class Inset {
- public:
-    // Asks for a gap between the face in which t lies and what it touches.
-    void add(const PlaneTriangle& t, double gap) {
-        planes_.add(t);
-        gap_ = std::max(gap_, gap);
-    }
-    bool contains(const PlaneTriangle& t) const { return planes_.contains(t); }
-
-    void apply(Scene& scene, uint32_t geometry) const {
-        std::map<std::array<float, 3>, std::vector<dvec3>> normals;  // of the faces to be moved, by vertex
-        const kernel::GeometryRecord& g = scene.geometries[geometry];
-        std::set<size_t> vertices;
-        for (uint32_t i = 0; i < plane_triangle_count(g); ++i) {
-            const PlaneTriangle t = plane_triangle(scene, geometry, i);
-            vertices.insert(t.vertices.begin(), t.vertices.end());
-            if (t.normal == dvec3(0.0) || !planes_.contains(t)) continue;
-            for (const size_t v : t.vertices) normals[position(scene, v)].push_back(t.normal);
-        }
-        for (const size_t v : vertices) {
-            const auto found = normals.find(position(scene, v));
-            if (found == normals.end()) continue;
-            const dvec3 by = displacement(found->second);
-            for (size_t axis = 0; axis < 3; ++axis) {
-                float& x = scene.positions[3 * v + axis];
-                x = float(double(x) + by[int(axis)]);
-            }
-        }
-    }
-
- private:
-    static std::array<float, 3> position(const Scene& scene, size_t v) {
-        return {scene.positions[3 * v], scene.positions[3 * v + 1], scene.positions[3 * v + 2]};
-    }
-
-    // The vertex lies on all of these faces, and goes below each by the gap (projections onto half-spaces in turns).
-    dvec3 displacement(const std::vector<dvec3>& normals) const {
-        constexpr int kRounds = 32;
-        dvec3 by(0.0);
-        for (int round = 0; round < kRounds; ++round) {
-            bool moved = false;
-            for (const dvec3& n : normals) {
-                const double missing = gap_ + glm::dot(by, n);
-                if (missing > 1e-3 * gap_) by -= missing * n, moved = true;
-            }
-            if (!moved) break;
-        }
-        // At a sharp tip, the half-spaces meet far away.
-        const double length = glm::length(by), most = 4.0 * gap_;
-        return length > most ? by * (most / length) : by;
-    }
-
-    PlaneSet planes_;
-    double gap_ = 0.0;
-};
-
-// The search through one set, and what comes of it.
+// The search, and what comes of it.
 class Search {
  public:
     Search(BuildContext& context, const std::vector<Location>& places)
         : context_(context), scene_(context.scene), places_(places), passes_(scene_) {}
 
-    void run(uint32_t set_index) {
+    // Shapes of one set among themselves.
+    void within(uint32_t set_index) {
         const GeometrySet& set = scene_.sets[set_index];
-        if (set.geometry_count < 2) return;
         equal_quadrics(set);
+        if (set.geometry_count == 1 && is_one_body(set.first_geometry)) return;
         TriangleTree passing;
         double largest = 0.0;
-        for_each_triangle(set, [&](const PlaneTriangle& t, uint32_t index) {
+        for_each_triangle(set, [&](const PlaneTriangle& t) {
             largest = std::max(largest, t.largest);
-            if (passes_(scene_.geometries[t.geometry])) passing.add(t, index);
+            if (passes_(scene_.geometries[t.geometry])) passing.add(t, t.geometry);
         });
         if (passing.empty()) return;
         passing.build();
         object_reach_ = set_index == 0 ? 0.0 : reach_of_object(scene_, set_index, largest);
-        for_each_triangle(set, [&](const PlaneTriangle& t, uint32_t) {
-            passing.near(t, [&](uint32_t geometry, uint32_t index) {
-                if (++pairs_ > kMostPairs) return false;
-                if (told_.contains(std::minmax(t.geometry, geometry))) return true;
-                const PlaneTriangle other = plane_triangle(scene_, geometry, index);
-                if (in_one_plane(other, t) && overlap(other, t)) touch(t, other);
-                return true;
+        for_each_triangle(set, [&](const PlaneTriangle& t) {
+            const uint32_t skipped = is_one_body(t.geometry) ? t.geometry : TriangleTree::kNoGroup;
+            passing.near(PlaceBox(t), skipped, [&](const TriangleTree::Entry& entry) {
+                return meet(t, entry, [&] { return plane_triangle(scene_, entry.geometry, entry.index); });
             });
         });
-        for (const auto& [geometry, inset] : insets_) inset.apply(scene_, geometry);
-        insets_.clear();
+        object_reach_ = 0.0;
+    }
+
+    // Bodies beside shapes of different instances, the world included. Instances of leaves, which are masked or thin, are too many.
+    void across_instances() {
+        if (scene_.instances.size() < 2) return;
+        TriangleTree passing;
+        for (uint32_t i = 0; i < scene_.instances.size(); ++i) {
+            const GeometrySet& set = scene_.sets[scene_.instance_sets[i]];
+            for (uint32_t g = set.first_geometry; g < set.first_geometry + set.geometry_count; ++g) {
+                if (!passes_.is_boundary(scene_.geometries[g])) continue;
+                if (passing.size() > kMostInInstances) return void(incomplete_ = true);
+                for_each_triangle({g, 1}, [&](const PlaneTriangle& own) {
+                    const PlaneTriangle t = in_world(scene_, own, i);
+                    if (t.normal != dvec3(0.0)) passing.add(t, i);
+                });
+            }
+        }
+        if (passing.empty()) return;
+        passing.build();
+        for (uint32_t i = 0; i < scene_.instances.size(); ++i) {
+            const std::optional<PlaceBox> box = box_of(i);
+            // Nothing is near most instances.
+            if (!box || passing.near(*box, i, [](const TriangleTree::Entry&) { return false; })) continue;
+            for_each_triangle(scene_.sets[scene_.instance_sets[i]], [&](const PlaneTriangle& own) {
+                const PlaneTriangle t = in_world(scene_, own, i);
+                if (t.normal == dvec3(0.0)) return;
+                passing.near(PlaceBox(t), i, [&](const TriangleTree::Entry& entry) {
+                    return meet(t, entry, [&] {
+                        return in_world(scene_, plane_triangle(scene_, entry.geometry, entry.index), entry.instance);
+                    });
+                });
+            });
+        }
+    }
+
+    void move() {
+        for (auto& [geometry, inset] : insets_) inset.apply(scene_);
     }
 
     // For the user to know.
@@ -187,11 +184,11 @@ class Search {
             if (moved_.size() - left == kMostMessages) break;
             --left;
             scene_.notes.push_back(fmt::format(
-                "{} (Shape): a face lies on one of the shape at {}, where light passes: it is moved inwards by {:.1g}",
-                where(pair.first), where(pair.second), gap));
+                "{} (Shape): a face lies on {}, where light passes: it is moved inwards by {:.1g}", where(pair.first),
+                pair.first == pair.second ? "another one of it" : "one of the shape at " + where(pair.second), gap));
         }
         if (left > 0) scene_.notes.push_back(fmt::format("{} more shapes touch, and are moved as well", left));
-        if (pairs_ > kMostPairs)
+        if (incomplete_)
             scene_.notes.push_back(
                 "not all shapes were looked at for faces in the same place: there are too many of them");
     }
@@ -202,8 +199,53 @@ class Search {
         for (uint32_t g = set.first_geometry; g < set.first_geometry + set.geometry_count; ++g)
             for (uint32_t i = 0; i < plane_triangle_count(scene_.geometries[g]); ++i) {
                 const PlaneTriangle t = plane_triangle(scene_, g, i);
-                if (t.normal != dvec3(0.0)) visit(t, i);
+                if (t.normal != dvec3(0.0)) visit(t);
             }
+    }
+
+    // Of an instance's triangles, in the world: the box of its set's box.
+    std::optional<PlaceBox> box_of(uint32_t instance) {
+        const auto [known, is_new] = set_boxes_.try_emplace(scene_.instance_sets[instance]);
+        if (is_new)
+            for_each_triangle(scene_.sets[scene_.instance_sets[instance]], [&](const PlaneTriangle& t) {
+                if (known->second)
+                    known->second->add(PlaceBox(t));
+                else
+                    known->second = PlaceBox(t);
+            });
+        if (!known->second) return std::nullopt;
+        return transformed(*known->second, scene_.instances[instance].transform);
+    }
+
+    // Whether a triangle and one that lets light pass, whose boxes meet, are in the same place. False to end the search.
+    template <typename Triangle>
+    bool meet(const PlaneTriangle& t, const TriangleTree::Entry& entry, const Triangle& triangle) {
+        const bool one_mesh = t.geometry == entry.geometry && t.instance == entry.instance;
+        if (!entry.may_be_in_one_plane(t) || (one_mesh && !may_be_two_bodies(t, entry))) return true;
+        if (++pairs_ > kMostPairs) return !(incomplete_ = true);
+        if (told_.contains(std::minmax(t.geometry, entry.geometry))) return true;
+        const PlaneTriangle other = triangle();
+        if (in_one_plane(other, t) && overlap(other, t)) touch(t, other, one_mesh);
+        return true;
+    }
+
+    // Of a mesh that is no body, triangles are not compared with each other.
+    bool is_one_body(uint32_t geometry) {
+        const auto [known, is_new] = one_body_.try_emplace(geometry, true);
+        if (is_new && passes_.is_boundary(scene_.geometries[geometry]))
+            known->second = !may_have_bodies(scene_, geometry);
+        return known->second;
+    }
+
+    // Triangles of one mesh that have a vertex in common and the same outside go on from each other.
+    bool may_be_two_bodies(const PlaneTriangle& t, const TriangleTree::Entry& entry) const {
+        if (t.index == entry.index) return false;
+        if (glm::dot(t.normal, dvec3(entry.normal)) < 0.0) return true;
+        const std::array<size_t, 3> other = triangle_vertices(scene_, entry.geometry, entry.index);
+        const auto shared = std::count_if(t.vertices.begin(), t.vertices.end(), [&](size_t v) {
+            return std::find(other.begin(), other.end(), v) != other.end();
+        });
+        return shared == 0 || shared == 3;
     }
 
     // Curved shapes: those that are the same.
@@ -218,21 +260,28 @@ class Search {
     }
 
     // `a` and `b` overlap in one plane.
-    void touch(const PlaneTriangle& a, const PlaneTriangle& b) {
+    void touch(const PlaneTriangle& a, const PlaneTriangle& b, bool one_mesh) {
         const bool a_can = passes_.is_boundary(scene_.geometries[a.geometry]),
                    b_can = passes_.is_boundary(scene_.geometries[b.geometry]);
         // Of two bodies, one ends where the other begins: the later one gives way. If both are on the same side, nobody knows
         // which is to be inside of the other.
         const bool unclear = a_can && b_can && glm::dot(a.normal, b.normal) > 0.0;
         if (unclear || (!a_can && !b_can)) return warn(a.geometry, b.geometry);
-        const bool a_moves = a_can && (!b_can || a.geometry > b.geometry);
+        const auto order = [](const PlaneTriangle& t) { return std::tie(t.instance, t.geometry, t.index); };
+        const bool a_moves = a_can && (!b_can || order(a) > order(b));
         const PlaneTriangle& moved = a_moves ? a : b;
         const PlaneTriangle& fixed = a_moves ? b : a;
-        Inset& inset = insets_[moved.geometry];
-        if (inset.contains(moved)) return;
-        const double gap = kGap * std::max({a.largest, b.largest, object_reach_}) + distance_from_plane(fixed, moved);
+        Inset& inset = insets_.try_emplace(moved.geometry, scene_, moved.geometry).first->second;
+        // Bodies of one mesh have to be told apart, and moved apart.
+        if (one_mesh && (inset.bodies().share_vertices ||
+                         inset.bodies().of_triangle[moved.index] == inset.bodies().of_triangle[fixed.index]))
+            return warn(a.geometry, b.geometry);
+        const double reach = std::max({a.largest, b.largest, object_reach_});
+        const double gap = (kGap * reach + distance_from_plane(fixed, moved)) * moved.scale;
+        const PlaneTriangle own = plane_triangle(scene_, moved.geometry, moved.index);
+        if (inset.has(own, gap)) return;
         if (gap > kMostChange * size_of(moved.geometry)) return warn(a.geometry, b.geometry);
-        inset.add(moved, gap);
+        inset.add(own, gap, one_mesh);
         double& largest_gap = moved_[{moved.geometry, fixed.geometry}];
         largest_gap = std::max(largest_gap, gap);
     }
@@ -242,9 +291,9 @@ class Search {
         if (!told_.insert(pair).second || told_.size() > kMostMessages) return;
         context_.diagnostics.warning(
             places_[pair.second],
-            fmt::format("a surface of this shape lies in the same place as one of the shape at {}, and light that "
-                        "passes through one of them misses the other",
-                        where(pair.first)),
+            fmt::format("a surface of this shape lies in the same place as {}, and light that passes through one of "
+                        "them misses the other",
+                        a == b ? "another one of it" : "one of the shape at " + where(pair.first)),
             fmt::format("a gap of {:g} of the coordinates is enough, or let the shapes overlap", kGap));
     }
 
@@ -267,17 +316,22 @@ class Search {
     Passing passes_;
     double object_reach_ = 0.0;  // of the set that is searched; 0: the world
     size_t pairs_ = 0;
+    bool incomplete_ = false;
+    std::map<uint32_t, std::optional<PlaceBox>> set_boxes_;
     std::set<std::pair<uint32_t, uint32_t>> told_;
     std::map<std::pair<uint32_t, uint32_t>, double> moved_;  // geometry and the one that it touches; the gap
     std::map<uint32_t, Inset> insets_;
     std::map<uint32_t, double> sizes_;
+    std::map<uint32_t, bool> one_body_;
 };
 
 }  // namespace
 
 void separate_touching_surfaces(BuildContext& context, const std::vector<Location>& places) {
     Search search(context, places);
-    for (uint32_t set = 0; set < context.scene.sets.size(); ++set) search.run(set);
+    for (uint32_t set = 0; set < context.scene.sets.size(); ++set) search.within(set);
+    search.across_instances();
+    search.move();
     search.report();
 }
 

@@ -32,41 +32,100 @@ dvec3 vector_at(const std::vector<float>& all, size_t index) {
     return {all[3 * index], all[3 * index + 1], all[3 * index + 2]};
 }
 
+dvec3 transformed(const kernel::TransformRecord& t, const dvec3& p) {
+    const glm::dvec4 point(p, 1.0);
+    return {glm::dot(glm::dvec4(t.to0), point), glm::dot(glm::dvec4(t.to1), point), glm::dot(glm::dvec4(t.to2), point)};
+}
+
+// A disk is a ring of so many quadrangles, whose corners lie on its circles.
+constexpr uint32_t kDiskParts = 64;
+
+// Corners of a disk's triangle, about its axis.
+std::array<dvec3, 3> disk_corners(const kernel::Quadric& q, uint32_t index) {
+    const auto at = [&](uint32_t part, float radius) {
+        const double phi = double(q.phi_max) * part / kDiskParts;
+        return dvec3(radius * std::cos(phi), radius * std::sin(phi), q.height);
+    };
+    const uint32_t part = index / 2;
+    if (index % 2 == 0) return {at(part, q.inner_radius), at(part, q.radius), at(part + 1, q.radius)};
+    return {at(part, q.inner_radius), at(part + 1, q.radius), at(part + 1, q.inner_radius)};
+}
+
+// What follows from its corners; its normal is that of their order.
+void complete(PlaneTriangle& t) {
+    t.largest = 0.0;
+    for (const dvec3& p : t.corners)
+        for (int axis = 0; axis < 3; ++axis) t.largest = std::max(t.largest, std::abs(p[axis]));
+    const dvec3 n = glm::cross(t.corners[1] - t.corners[0], t.corners[2] - t.corners[0]);
+    const double length = glm::length(n);
+    t.normal = dvec3(0.0);
+    if (!(length > 0.0)) return;
+    t.normal = n / length;
+    double longest = 0.0;
+    for (size_t k = 0; k < 3; ++k) longest = std::max(longest, glm::distance(t.corners[k], t.corners[(k + 1) % 3]));
+    t.height = length / longest;
+    // A height that is wrong by the rounding of coordinates turns the plane about the triangle, and the origin may be far away.
+    t.distance_error = t.largest * (kSamePlane + std::min(kRounding * t.largest / t.height, kMostTurned));
+}
+
 }  // namespace
 
 uint32_t plane_triangle_count(const kernel::GeometryRecord& g) {
-    if (g.kind > kernel::GEOMETRY_BILINEAR) return 0;
-    return g.primitive_count * (g.kind == kernel::GEOMETRY_BILINEAR ? 2 : 1);
+    switch (g.kind) {
+        case kernel::GEOMETRY_TRIANGLES: return g.primitive_count;
+        case kernel::GEOMETRY_BILINEAR: return 2 * g.primitive_count;
+        case kernel::GEOMETRY_DISK: return 2 * kDiskParts;
+        default: return 0;
+    }
+}
+
+std::array<size_t, 3> triangle_vertices(const Scene& scene, uint32_t geometry, uint32_t index) {
+    const kernel::GeometryRecord& g = scene.geometries[geometry];
+    const bool patch = g.kind == kernel::GEOMETRY_BILINEAR;
+    std::array<size_t, 3> vertices;
+    for (uint32_t k = 0; k < 3; ++k) {
+        const size_t corner = patch ? 4 * size_t(index / 2) + kHalves[index % 2][k] : 3 * size_t(index) + k;
+        vertices[k] = size_t(g.first_vertex) + scene.indices[g.first_index + corner];
+    }
+    return vertices;
 }
 
 PlaneTriangle plane_triangle(const Scene& scene, uint32_t geometry, uint32_t index) {
     const kernel::GeometryRecord& g = scene.geometries[geometry];
-    const bool patch = g.kind == kernel::GEOMETRY_BILINEAR;
-    const bool smooth = g.first_normal != kernel::NONE;
     PlaneTriangle t;
-    t.geometry = geometry;
-    dvec3 side(0.0);
-    for (uint32_t k = 0; k < 3; ++k) {
-        const size_t corner = patch ? 4 * size_t(index / 2) + kHalves[index % 2][k] : 3 * size_t(index) + k;
-        const size_t vertex = scene.indices[g.first_index + corner];
-        t.vertices[k] = g.first_vertex + vertex;
-        t.corners[k] = vector_at(scene.positions, t.vertices[k]);
-        if (smooth) side += vector_at(scene.normals, g.first_normal + vertex);
-        for (int axis = 0; axis < 3; ++axis) t.largest = std::max(t.largest, std::abs(t.corners[k][axis]));
+    t.geometry = geometry, t.index = index;
+    if (g.kind == kernel::GEOMETRY_DISK) {
+        t.corners = disk_corners(g.quadric, index);
+        for (dvec3& p : t.corners) p = transformed(scene.transforms[g.transform], p);
+        complete(t);
+        return t;  // it has no inside
     }
-    const dvec3 n = glm::cross(t.corners[1] - t.corners[0], t.corners[2] - t.corners[0]);
-    const double length = glm::length(n);
-    if (!(length > 0.0)) return t;
-    t.normal = n / length;
-    // A height that is wrong by the rounding of coordinates turns the plane about the triangle, and the origin may be far away.
-    double longest = 0.0;
-    for (size_t k = 0; k < 3; ++k) longest = std::max(longest, glm::distance(t.corners[k], t.corners[(k + 1) % 3]));
-    const double turn_error = std::min(kRounding * t.largest / (length / longest), kMostTurned);
-    t.distance_error = t.largest * (kSamePlane + turn_error);
+    const bool smooth = g.first_normal != kernel::NONE;
+    dvec3 side(0.0);
+    t.vertices = triangle_vertices(scene, geometry, index);
+    for (size_t k = 0; k < 3; ++k) {
+        t.corners[k] = vector_at(scene.positions, t.vertices[k]);
+        if (smooth) side += vector_at(scene.normals, g.first_normal + (t.vertices[k] - g.first_vertex));
+    }
+    complete(t);
     // Kernels turn normals in the same way (triangle_surface, bilinear_fill).
     const bool turn = smooth ? glm::dot(t.normal, side) < 0.0 : (g.flags & kernel::GEOMETRY_FLIP) != 0u;
     if (turn) t.normal = -t.normal;
     return t;
+}
+
+PlaneTriangle in_world(const Scene& scene, const PlaneTriangle& t, uint32_t instance) {
+    const kernel::TransformRecord& transform = scene.instances[instance].transform;
+    PlaneTriangle world = t;
+    world.instance = instance;
+    for (dvec3& p : world.corners) p = transformed(transform, p);
+    complete(world);
+    // Normals go by the transposed inverse, and so does their length.
+    const dvec3 n =
+        t.normal.x * dvec3(transform.from0) + t.normal.y * dvec3(transform.from1) + t.normal.z * dvec3(transform.from2);
+    if (glm::dot(world.normal, n) < 0.0) world.normal = -world.normal;
+    world.scale = glm::length(n);
+    return world;
 }
 
 double distance_from_plane(const PlaneTriangle& a, const PlaneTriangle& b) {
@@ -131,20 +190,34 @@ std::vector<uint64_t> Plane::cells() const {
     return all;
 }
 
-TriangleTree::Box::Box(const PlaneTriangle& t) : low(t.corners[0]), high(t.corners[0]) {
+PlaceBox::PlaceBox(const PlaneTriangle& t) : low(t.corners[0]), high(t.corners[0]) {
     for (const dvec3& p : t.corners) low = glm::min(low, glm::vec3(p)), high = glm::max(high, glm::vec3(p));
-    const float margin = float((kSamePlane + kRounding) * t.largest);
+    add_margin(t.largest);
+}
+
+void PlaceBox::add_margin(double largest_coordinate) {
+    const float margin = float((kSamePlane + kRounding) * largest_coordinate);
     low -= margin, high += margin;
 }
 
-bool TriangleTree::Box::meets(const Box& other) const {
+bool PlaceBox::meets(const PlaceBox& other) const {
     return low.x <= other.high.x && other.low.x <= high.x && low.y <= other.high.y && other.low.y <= high.y &&
            low.z <= other.high.z && other.low.z <= high.z;
 }
 
-void TriangleTree::Box::add(const Box& other) { low = glm::min(low, other.low), high = glm::max(high, other.high); }
+void PlaceBox::add(const PlaceBox& other) { low = glm::min(low, other.low), high = glm::max(high, other.high); }
 
-void TriangleTree::add(const PlaneTriangle& t, uint32_t index) { entries_.push_back({Box(t), t.geometry, index}); }
+// The corners of the smaller one are that close to the plane of the other one.
+bool TriangleTree::Entry::may_be_in_one_plane(const PlaneTriangle& t) const {
+    const double most = std::max(t.largest, double(largest));
+    const double turned = 4.0 * kSamePlane * most / std::min(t.height, double(height)) + 1e-5;
+    return glm::length(glm::cross(t.normal, dvec3(normal))) <= turned;
+}
+
+void TriangleTree::add(const PlaneTriangle& t, uint32_t group) {
+    entries_.push_back(
+        {PlaceBox(t), glm::vec3(t.normal), float(t.height), float(t.largest), group, t.instance, t.geometry, t.index});
+}
 
 void TriangleTree::build() {
     nodes_.reserve(entries_.size());
@@ -154,10 +227,10 @@ void TriangleTree::build() {
 uint32_t TriangleTree::build(size_t first, size_t count) {
     constexpr size_t kLeaf = 4;
     const auto begin = entries_.begin() + ptrdiff_t(first), end = begin + ptrdiff_t(count);
-    Node node{begin->box, begin->geometry, begin->geometry, uint32_t(first), uint32_t(count)};
+    Node node{begin->box, begin->group, begin->group, uint32_t(first), uint32_t(count)};
     for (auto entry = begin; entry != end; ++entry) {
         node.box.add(entry->box);
-        node.lowest = std::min(node.lowest, entry->geometry), node.highest = std::max(node.highest, entry->geometry);
+        node.lowest = std::min(node.lowest, entry->group), node.highest = std::max(node.highest, entry->group);
     }
     const uint32_t at = uint32_t(nodes_.size());
     nodes_.push_back(node);

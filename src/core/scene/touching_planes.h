@@ -17,20 +17,26 @@ namespace lampyris {
 // three times as far beyond oblique ones, and both faces are rounded.
 constexpr double kSamePlane = 2.4e-6;
 
-// A triangle of a mesh, or half of a patch (all of it, if it is plane), in the space of its set.
+// A triangle of a mesh, half of a patch (all of it, if it is plane) or a part of a disk, in the space of its set or in the world.
 struct PlaneTriangle {
     std::array<glm::dvec3, 3> corners;
-    std::array<size_t, 3> vertices{};  // in Scene::positions
+    std::array<size_t, 3> vertices{};  // in Scene::positions; not of disks
     // To the outside, as kernels see it; unit length, and 0 for a triangle without area.
     glm::dvec3 normal{0.0};
     double largest = 0.0;         // coordinate
+    double height = 0.0;          // on its longest side
     double distance_error = 0.0;  // of Plane::distance, from the rounding of its corners
-    uint32_t geometry = 0;
+    double scale = 1.0;           // a length along the normal in the space of its set, over the same one here
+    uint32_t instance = 0, geometry = 0, index = 0;
 };
 
-// How many triangles a geometry has here: none if it is a quadric.
+// How many triangles a geometry has here: none if it is a sphere or a cylinder.
 uint32_t plane_triangle_count(const kernel::GeometryRecord& g);
 PlaneTriangle plane_triangle(const Scene& scene, uint32_t geometry, uint32_t index);
+// The vertices of a mesh's triangle, in Scene::positions.
+std::array<size_t, 3> triangle_vertices(const Scene& scene, uint32_t geometry, uint32_t index);
+// The same in the world, as part of an instance of its set.
+PlaneTriangle in_world(const Scene& scene, const PlaneTriangle& t, uint32_t instance);
 
 // The largest distance of b's corners from the plane of a.
 double distance_from_plane(const PlaneTriangle& a, const PlaneTriangle& b);
@@ -48,46 +54,55 @@ struct Plane {
     std::vector<uint64_t> cells() const;
 };
 
-// Triangles of several geometries, to be found by their place: a tree of boxes.
+// A box that is wider than what it holds by what counts as the same place.
+struct PlaceBox {
+    glm::vec3 low, high;
+    explicit PlaceBox(const PlaneTriangle& t);
+    bool meets(const PlaceBox& other) const;
+    void add(const PlaceBox& other);
+    void add_margin(double largest_coordinate);
+};
+
+// Triangles to be found by their place: a tree of boxes.
 class TriangleTree {
  public:
-    void add(const PlaneTriangle& t, uint32_t index);
+    struct Entry {
+        PlaceBox box;
+        glm::vec3 normal;
+        float height, largest;  // of the triangle
+        uint32_t group, instance, geometry, index;
+        // False if their normals differ by so much that they are not in one plane. It is cheap.
+        bool may_be_in_one_plane(const PlaneTriangle& t) const;
+    };
+    static constexpr uint32_t kNoGroup = ~0u;
+
+    void add(const PlaneTriangle& t, uint32_t group);
     void build();  // after the last one
     bool empty() const { return entries_.empty(); }
+    size_t size() const { return entries_.size(); }
 
-    // Calls visit(geometry, index) for the triangles of other geometries whose boxes are near that of t. Stops where it returns false.
+    // Calls visit(entry) for the triangles whose boxes meet this one, but for those of one group. Stops where it returns false.
     template <typename Visit>
-    bool near(const PlaneTriangle& t, const Visit& visit) const {
-        return entries_.empty() || near(0, Box(t), t.geometry, visit);
+    bool near(const PlaceBox& box, uint32_t skipped_group, const Visit& visit) const {
+        return entries_.empty() || near(0, box, skipped_group, visit);
     }
 
  private:
-    // Wider than the triangle by what counts as the same place.
-    struct Box {
-        glm::vec3 low, high;
-        explicit Box(const PlaneTriangle& t);
-        bool meets(const Box& other) const;
-        void add(const Box& other);
-    };
-    struct Entry {
-        Box box;
-        uint32_t geometry, index;
-    };
     struct Node {
-        Box box;
-        uint32_t lowest, highest;  // of its geometries
+        PlaceBox box;
+        uint32_t lowest, highest;  // of its groups
         uint32_t first, count;     // entries; count = 0: the children are the next node and `first`
     };
     uint32_t build(size_t first, size_t count);
 
     template <typename Visit>
-    bool near(uint32_t at, const Box& box, uint32_t geometry, const Visit& visit) const {
+    bool near(uint32_t at, const PlaceBox& box, uint32_t skipped, const Visit& visit) const {
         const Node& node = nodes_[at];
-        if (!node.box.meets(box) || (node.lowest == geometry && node.highest == geometry)) return true;
-        if (node.count == 0) return near(at + 1, box, geometry, visit) && near(node.first, box, geometry, visit);
+        if (!node.box.meets(box) || (node.lowest == skipped && node.highest == skipped)) return true;
+        if (node.count == 0) return near(at + 1, box, skipped, visit) && near(node.first, box, skipped, visit);
         for (uint32_t i = node.first; i < node.first + node.count; ++i) {
             const Entry& entry = entries_[i];
-            if (entry.geometry != geometry && entry.box.meets(box) && !visit(entry.geometry, entry.index)) return false;
+            if (entry.group != skipped && entry.box.meets(box) && !visit(entry)) return false;
         }
         return true;
     }
@@ -103,8 +118,8 @@ class PlaneSet {
     bool contains(const PlaneTriangle& t) const;
 
  private:
-    std::map<uint64_t, std::set<double>> by_cell_;
-    double error_ = 0.0;  // largest of its triangles'
+    std::map<uint64_t, std::set<double>> by_cell_;  // distances of planes
+    double error_ = 0.0;                            // largest of its triangles'
 };
 
 }  // namespace lampyris

@@ -1,0 +1,43 @@
+// Faces of a mesh that are moved to the inside of its bodies.
+#pragma once
+
+#include "core/scene/mesh_bodies.h"
+#include "core/scene/touching_planes.h"
+
+#include <glm/vec3.hpp>
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+namespace lampyris {
+
+class Inset {
+ public:
+    Inset(const Scene& scene, uint32_t geometry) : scene_(scene), geometry_(geometry) {}
+
+    // Which triangles bound one body; found when it is first asked for.
+    const MeshBodies& bodies();
+    // Asks for a gap between what the face in which t lies touches, and that face, of all bodies or of its own.
+    void add(const PlaneTriangle& t, double gap, bool of_its_body);
+    // Whether the face has a gap as large as that.
+    bool has(const PlaneTriangle& t, double gap);
+
+    void apply(Scene& scene);
+
+ private:
+    static constexpr uint32_t kAllBodies = ~0u;
+
+    bool moves(const PlaneTriangle& t);
+    glm::dvec3 displacement(const std::vector<glm::dvec3>& normals) const;
+
+    const Scene& scene_;
+    uint32_t geometry_;
+    std::optional<MeshBodies> bodies_;
+    std::map<uint32_t, PlaneSet> planes_;  // by body
+    double gap_ = 0.0;                     // of all its faces
+};
+
+}  // namespace lampyris
