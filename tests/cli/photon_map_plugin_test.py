@@ -5,7 +5,7 @@ import json
 
 import pytest
 
-from support.plugin_project import build, check_example, checked, configure, guide_files, write_files
+from support.plugin_project import QUICK, build, check_example, checked, configure, guide_files, write_files
 
 SCENE = """
 LookAt 0 1 -4  0 0.5 0  0 1 0
@@ -34,7 +34,7 @@ def outside(source_dir, installed, tmp_path_factory):
     folder = tmp_path_factory.mktemp("outside")
     write_files(folder / "slabs", guide_files(source_dir, "photon-map-guide.md", "slabs"))
     (folder / "scene.pbrt").write_text(SCENE)
-    configure(folder / "slabs", installed, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release")
+    configure(folder / "slabs", installed, "-G", "Ninja", *QUICK)
     build(folder / "slabs")
     return folder
 

@@ -6,7 +6,7 @@ import os
 
 import pytest
 
-from support.plugin_project import EVERY, build, checked, configure, write_files
+from support.plugin_project import EVERY, QUICK, build, checked, configure, write_files
 from support.render_program import read_pfm
 
 FLAT = {
@@ -65,7 +65,7 @@ class Project:
         write_files(folder, {"CMakeLists.txt": f"cmake_minimum_required(VERSION 3.25)\n{top}", "scene.pbrt": SCENE})
         write_files(folder, files)
         # Speed does not matter here.
-        configure(folder, installed, "-G", generator, "-DCMAKE_BUILD_TYPE=Debug")
+        configure(folder, installed, "-G", generator, *QUICK)
         build(folder)
 
     def edit(self, name, old, new):

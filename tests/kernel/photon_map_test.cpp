@@ -32,17 +32,22 @@ std::unique_ptr<Device> device_for(const std::string& choice) {
     return nullptr;
 }
 
-// photon_map_long_test has the sizes that matter.
+// photon_map_long_test has the sizes that matter. Other backends than the CPU get a third of the cases, each of another kind: many
+// queries, many photons, one photon.
 TEST(PhotonMap, ExactOnesFindWhatBruteForceFinds) {
     std::vector<std::string> maps = exact_photon_maps();
     maps.emplace_back("brute_force");
-    std::vector<PhotonCase> cases;
+    std::vector<PhotonCase> cases, few;
     for (const std::string& name : photon_case_names()) {
         cases.push_back(make_photon_case(name, 2000, 4000));
         cases.push_back(make_photon_case(name, 20'000, 200));
         cases.push_back(make_photon_case(name, 1, 50));
+        few.push_back(cases[cases.size() - 3 + few.size() % 3]);
     }
-    expect_exact(maps, cases);
+    expect_exact(maps, cases, {"cpu"});
+    std::vector<std::string> others = usable_backends();
+    std::erase(others, "cpu");
+    expect_exact(maps, few, others);
 }
 
 // The same sums, to the bit, on any number of threads and any backend, and in whatever order photons were stored.
@@ -83,12 +88,13 @@ TEST(PhotonMap, FixedOrderMeansTheSameSums) {
 }
 
 // Cells that did not get an entry are found in the stash. With a table this tight about 115 of 10^6 cells are stashed, and
-// four of these would have found an empty entry next. If lookups ended at empty entries, twelve photons would be lost on the CPU.
+// four of these would have found an empty entry next. If lookups ended at empty entries, these would be lost.
 TEST(PhotonMap, CuckooFindsWhatItStashed) {
     constexpr uint32_t kSide = 100;
     for (const std::string& backend : usable_backends()) {
+        if (backend == "cpu-bvh2") continue;  // the same kernels
         const auto device = create_device(backend);
-        for (uint32_t seed = 1; seed <= (backend == "cpu" ? 3u : 1u); ++seed) {
+        for (const uint32_t seed : {1u}) {
             SCOPED_TRACE(backend + " " + std::to_string(seed));
             std::mt19937 random(seed);
             std::uniform_real_distribution<float> jitter(0.25f, 0.75f);

@@ -89,7 +89,8 @@ TEST(PhotonNearest, AreThoseThatASortFinds) {
         EXPECT_GT(full, 100u);
         EXPECT_GT(not_full, 100u);
         for (const std::string& backend : usable_backends()) {
-            if (backend == "cpu-bvh2") continue;  // kernels that trace no rays are the same ones there
+            if (backend == "cpu-bvh2") continue;              // kernels that trace no rays are the same ones there
+            if (backend != "cpu" && wanted != 20u) continue;  // kernels are the same ones for any number
             const auto device = create_device(backend);
             for (const std::string& choice : nearest_maps()) {
                 const auto map = create_photon_map(choice);

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 
 namespace lampyris::test {
@@ -23,23 +24,34 @@ INSTANTIATE_TEST_SUITE_P(Scenes, BackendsLongTest,
                          [](const auto& info) { return test_name(info.param); });
 
 // Those that backends_test leaves out.
-class AnalyticScenesTest : public testing::TestWithParam<std::string> {};
+class OtherScenesTest : public testing::TestWithParam<std::string> {};
 
-TEST_P(AnalyticScenesTest, OneSampleIsTheSameOnVulkan) {
+TEST_P(OtherScenesTest, OneSampleIsTheSameOnVulkan) {
     RenderSettings settings;
     settings.samples = 1;
     settings.seed = 20;
     expect_agreement(GetParam(), "vulkan", settings, 1e-5, 0.999);
 }
 
-std::vector<std::string> analytic_scenes() {
+std::vector<std::string> other_scenes() {
+    const std::vector<std::string>& few = scenes_of_all_effects();
     std::vector<std::string> scenes = small_scenes();
-    std::erase_if(scenes, [](const std::string& name) { return !name.starts_with("analytic/"); });
+    std::erase_if(scenes, [&](const auto& name) { return std::find(few.begin(), few.end(), name) != few.end(); });
     return scenes;
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, AnalyticScenesTest, testing::ValuesIn(analytic_scenes()),
+INSTANTIATE_TEST_SUITE_P(Scenes, OtherScenesTest, testing::ValuesIn(other_scenes()),
                          [](const auto& info) { return test_name(info.param); });
+
+// Every quotient of a kernel with rough glass.
+TEST(BackendsExactLongTest, QuotientsByIntegersAreTheSame) {
+    RenderSettings settings;
+    settings.samples = 1;
+    settings.seed = 25;
+    settings.device_settings["exact"] = "on";
+    settings.device_settings["staging"] = "on";  // as on a GPU
+    expect_agreement("reference/dielectric-rough", "vulkan", settings, 1e-5, 0.999);
+}
 
 class LargeScenesTest : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
 
@@ -95,6 +107,10 @@ INSTANTIATE_TEST_SUITE_P(Scenes, LightPathsLongTest,
                              return test_name(std::get<0>(info.param) + "_" +
                                               integrator.substr(0, integrator.find(':')));
                          });
+INSTANTIATE_TEST_SUITE_P(ChosenCounts, LightPathsLongTest,
+                         testing::Combine(testing::Values("reference/dielectric-smooth"),
+                                          testing::Values("bdpt:maxdepth=5,counts=auto")),
+                         [](const auto&) { return "bdpt"; });
 
 }  // namespace
 }  // namespace lampyris::test

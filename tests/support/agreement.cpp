@@ -1,5 +1,7 @@
 #include "support/agreement.h"
 
+#include "core/scene/load.h"
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -49,6 +51,19 @@ std::vector<std::string> small_scenes() {
                 names.push_back(std::string(folder) + "/" + entry.path().stem().string());
     std::sort(names.begin(), names.end());
     return names;
+}
+
+const std::vector<std::string>& scenes_of_all_effects() {
+    static const std::vector<std::string> names{
+        "reference/coated-diffuse",  "reference/conductor-gold", "reference/diffuse-transmission",
+        "reference/distant",         "reference/infinite-image", "reference/instances",
+        "reference/point-spot",      "reference/sds-lamp",       "reference/textures",
+        "reference/thin-dielectric", "reference/thin-lens"};
+    return names;
+}
+
+uint64_t effects_of(const std::string& scene) {
+    return load_scene(SceneSource::of_file(scene_path(scene)), {}, false).scene.effects.mask();
 }
 
 std::string test_name(std::string text) {

@@ -4,6 +4,7 @@
 #include "support/render.h"
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,9 @@ Agreement agreement(const Rendered& a, const Rendered& b, double tolerance);
 
 // Every scene of the folders scenes/reference and scenes/analytic, as paths relative to scenes/ without extension; sorted.
 std::vector<std::string> small_scenes();
+// As few of scenes/reference as have the effects of all of them.
+const std::vector<std::string>& scenes_of_all_effects();
+uint64_t effects_of(const std::string& scene);
 std::string scene_path(const std::string& name);
 // A name that GoogleTest accepts.
 std::string test_name(std::string text);

@@ -264,7 +264,10 @@ std::vector<HardCase> make_cases() {
                "radius=0.05,photonsperiteration=1000", 16);
     for (HardCase& hard : cases)
         for (const char* name : {"slab", "total", "floor, 1 above", "1 mm", "needles", "vertices", "grazing", "film"})
-            hard.everywhere |= hard.name.find(name) != std::string::npos;
+            hard.for_tracers |= hard.name.find(name) != std::string::npos;
+    for (HardCase& hard : cases)
+        for (const char* name : {"glass, 0 apart", "an instance", "needles", "grazing angle of 2e-08", "1 mm"})
+            hard.for_vulkan |= hard.name.find(name) != std::string::npos;
     return cases;
 }
 

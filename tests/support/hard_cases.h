@@ -20,9 +20,8 @@ struct HardCase {
     std::vector<std::string> integrators{"path", "bdpt", "vcm", "mlt", "sppm"};
     double power = 0.05;          // an error of this share of the radiance is found
     std::string photon_map = {};  // the default one
-    // Hard for rays, or for code that differs between backends: by default tested on all of them. hard_cases_long_test has the
-    // others.
-    bool everywhere = false;
+    // Hard for rays: by default tested with the other tracer, too; and a few of these on Vulkan. hard_cases_long_test has all.
+    bool for_tracers = false, for_vulkan = false;
 };
 
 const std::vector<HardCase>& hard_cases();

@@ -3,6 +3,7 @@
 
 #include "accel/photons/collect/collect_host.h"
 #include "core/photons/photon_map.h"
+#include "support/device_run.h"
 
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -42,8 +43,9 @@ std::vector<CollectResult> collect(Device& device, PhotonMap& map, const PhotonS
 // photons found; the reference adds up floats, with a relative error of at most n * 2^-24.
 bool same_photons(const CollectResult& found, const CollectResult& expected, bool sums_only);
 
-// Fails if one of the maps, on any backend that can run it, finds other photons than brute force finds on the CPU.
-void expect_exact(const std::vector<std::string>& maps, const std::vector<PhotonCase>& cases);
+// Fails if one of the maps, on any of these backends that can run it, finds other photons than brute force finds on the CPU.
+void expect_exact(const std::vector<std::string>& maps, const std::vector<PhotonCase>& cases,
+                  const std::vector<std::string>& backends = usable_backends());
 
 // Names of maps, with parameters, that guarantee exactness: each with its defaults and with the parameters that tests need.
 std::vector<std::string> exact_photon_maps();
