@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <numeric>
 #include <tuple>
@@ -132,6 +133,35 @@ MeshBodies bodies_of_mesh(const Scene& scene, uint32_t geometry) {
     return result;
 }
 
+void split_shared_vertices(Scene& scene, uint32_t geometry, const MeshBodies& bodies) {
+    if (!bodies.share_vertices) return;
+    kernel::GeometryRecord& g = scene.geometries[geometry];
+    const uint32_t corners = g.kind == kernel::GEOMETRY_TRIANGLES ? 3 : 4;
+    const uint32_t triangles_each = plane_triangle_count(g) / g.primitive_count;
+    // The vertices that there will be, by their old numbers: one for each body that has them.
+    std::map<std::pair<uint32_t, uint32_t>, uint32_t> numbers;  // of vertex and body
+    std::vector<uint32_t> old;
+    for (uint32_t i = 0; i < g.primitive_count; ++i)
+        for (uint32_t k = 0; k < corners; ++k) {
+            uint32_t& index = scene.indices[g.first_index + corners * i + k];
+            const auto [known, is_new] =
+                numbers.try_emplace({index, bodies.of_triangle[triangles_each * i]}, uint32_t(old.size()));
+            if (is_new) old.push_back(index);
+            index = known->second;
+        }
+    const auto append = [&](std::vector<float>& all, uint32_t& first, size_t size) {
+        if (first == kernel::NONE) return;
+        const size_t from = size * first;
+        first = uint32_t(all.size() / size);
+        all.reserve(all.size() + size * old.size());
+        for (const uint32_t v : old)
+            for (size_t c = 0; c < size; ++c) all.push_back(all[from + size * v + c]);
+    };
+    append(scene.positions, g.first_vertex, 3);
+    append(scene.normals, g.first_normal, 3);
+    append(scene.uvs, g.first_uv, 2);
+}
+
 bool may_have_bodies(const Scene& scene, uint32_t geometry) {
     const kernel::GeometryRecord& g = scene.geometries[geometry];
     const uint32_t count = plane_triangle_count(g);
@@ -140,31 +170,35 @@ bool may_have_bodies(const Scene& scene, uint32_t geometry) {
         for (const size_t v : triangle_vertices(scene, geometry, i)) highest = std::max(highest, v);
     const uint32_t vertices = uint32_t(highest - g.first_vertex + 1);
 
-    // The vertices that edges lead to, by the vertex that they come from.
-    Union connected(vertices);
-    std::vector<uint32_t> first(size_t(vertices) + 1, 0), ends(3 * size_t(count));
+    // Where edges lead to, and their triangles, by the vertex that they come from.
+    using End = std::pair<uint32_t, uint32_t>;
+    std::vector<uint32_t> first(size_t(vertices) + 1, 0);
+    std::vector<End> ends(3 * size_t(count));
     const auto for_each_edge = [&](const auto& visit) {
         for (uint32_t i = 0; i < count; ++i) {
             const std::array<size_t, 3> v = triangle_vertices(scene, geometry, i);
             for (size_t k = 0; k < 3; ++k)
-                visit(uint32_t(v[k] - g.first_vertex), uint32_t(v[(k + 1) % 3] - g.first_vertex));
+                visit(uint32_t(v[k] - g.first_vertex), uint32_t(v[(k + 1) % 3] - g.first_vertex), i);
         }
     };
-    for_each_edge([&](uint32_t from, uint32_t) { ++first[from]; });
+    for_each_edge([&](uint32_t from, uint32_t, uint32_t) { ++first[from]; });
     std::exclusive_scan(first.begin(), first.end(), first.begin(), 0u);
     std::vector<uint32_t> next = first;
-    for_each_edge([&](uint32_t from, uint32_t to) {
-        ends[next[from]++] = to;
-        connected.unite(from, to);
-    });
-    uint32_t body = vertices;  // none yet
+    for_each_edge([&](uint32_t from, uint32_t to, uint32_t triangle) { ends[next[from]++] = {to, triangle}; });
     for (uint32_t v = 0; v < vertices; ++v) {
-        if (first[v] == first[v + 1]) continue;  // no triangle has it
-        if (body == vertices) body = connected.find(v);
         const auto begin = ends.begin() + first[v], end = ends.begin() + first[v + 1];
         std::sort(begin, end);
-        if (connected.find(v) != body || std::adjacent_find(begin, end) != end) return true;
+        const auto same = [](const End& a, const End& b) { return a.first == b.first; };
+        if (std::adjacent_find(begin, end, same) != end) return true;
     }
+    Union connected(count);
+    for_each_edge([&](uint32_t from, uint32_t to, uint32_t triangle) {
+        const auto begin = ends.begin() + first[to], end = ends.begin() + first[to + 1];
+        const auto back = std::lower_bound(begin, end, End{from, 0u});
+        if (back != end && back->first == from) connected.unite(triangle, back->second);
+    });
+    for (uint32_t i = 1; i < count; ++i)
+        if (connected.find(i) != connected.find(0)) return true;
     return false;
 }
 

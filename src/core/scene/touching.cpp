@@ -73,7 +73,7 @@ PlaceBox transformed(const PlaceBox& box, const kernel::TransformRecord& t) {
         ++axis;
     }
     const glm::vec3 largest = glm::max(glm::abs(world.low), glm::abs(world.high));
-    world.add_margin(std::max({largest.x, largest.y, largest.z}));
+    world.widen(1e-6 * double(std::max({largest.x, largest.y, largest.z})));  // its rounding
     return world;
 }
 
@@ -88,11 +88,14 @@ std::string quadric_key(const Scene& scene, const kernel::GeometryRecord& g) {
 constexpr size_t kMostMessages = 10;
 // Thousands of shapes in one place would take too long.
 constexpr size_t kMostPairs = 20'000'000;
+// The same for triangles whose boxes meet, most of which are in other planes.
+constexpr size_t kMostNear = 100'000'000;
 // Triangles that let light pass, of all instances.
 constexpr size_t kMostInInstances = 2'000'000;
 
-// Faces that touch are moved apart by this part of the coordinates.
-constexpr double kGap = 3e-6;
+// Faces that touch are moved apart by this much more than what counts as the same place: 3e-6 of the coordinates, and the error of
+// their planes.
+constexpr double kGap = 1.25;
 // No body is changed by more than this part of its size.
 constexpr double kMostChange = 1e-3;
 
@@ -122,22 +125,32 @@ class Search {
         const GeometrySet& set = scene_.sets[set_index];
         equal_quadrics(set);
         if (set.geometry_count == 1 && is_one_body(set.first_geometry)) return;
+        bool any = false;
+        for (uint32_t g = set.first_geometry; g < set.first_geometry + set.geometry_count; ++g)
+            any = any || passes_(scene_.geometries[g]);
+        if (!any) return;
+        double reach = 0.0;
+        if (set_index != 0) {
+            for_each_triangle(set, [&](const PlaneTriangle& t) { reach = std::max(reach, t.largest); });
+            reach = reach_of_object(scene_, set_index, reach);
+        }
+        const auto seen = [reach](PlaneTriangle t) {
+            t.largest = std::max(t.largest, reach);
+            return t;
+        };
         TriangleTree passing;
-        double largest = 0.0;
         for_each_triangle(set, [&](const PlaneTriangle& t) {
-            largest = std::max(largest, t.largest);
-            if (passes_(scene_.geometries[t.geometry])) passing.add(t, t.geometry);
+            if (passes_(scene_.geometries[t.geometry])) passing.add(seen(t), t.geometry);
         });
         if (passing.empty()) return;
         passing.build();
-        object_reach_ = set_index == 0 ? 0.0 : reach_of_object(scene_, set_index, largest);
-        for_each_triangle(set, [&](const PlaneTriangle& t) {
+        for_each_triangle(set, [&](const PlaneTriangle& own) {
+            const PlaneTriangle t = seen(own);
             const uint32_t skipped = is_one_body(t.geometry) ? t.geometry : TriangleTree::kNoGroup;
             passing.near(PlaceBox(t), skipped, [&](const TriangleTree::Entry& entry) {
-                return meet(t, entry, [&] { return plane_triangle(scene_, entry.geometry, entry.index); });
+                return meet(t, entry, [&] { return seen(plane_triangle(scene_, entry.geometry, entry.index)); });
             });
         });
-        object_reach_ = 0.0;
     }
 
     // Bodies beside shapes of different instances, the world included. Instances of leaves, which are masked or thin, are too many.
@@ -221,6 +234,7 @@ class Search {
     template <typename Triangle>
     bool meet(const PlaneTriangle& t, const TriangleTree::Entry& entry, const Triangle& triangle) {
         const bool one_mesh = t.geometry == entry.geometry && t.instance == entry.instance;
+        if (++near_ > kMostNear) return !(incomplete_ = true);
         if (!entry.may_be_in_one_plane(t) || (one_mesh && !may_be_two_bodies(t, entry))) return true;
         if (++pairs_ > kMostPairs) return !(incomplete_ = true);
         if (told_.contains(std::minmax(t.geometry, entry.geometry))) return true;
@@ -255,7 +269,8 @@ class Search {
             const kernel::GeometryRecord& record = scene_.geometries[g];
             if (record.kind <= kernel::GEOMETRY_BILINEAR) continue;
             const auto [first, is_first] = first_of.try_emplace(quadric_key(scene_, record), g);
-            if (!is_first && (passes_(record) || passes_(scene_.geometries[first->second]))) warn(first->second, g);
+            if (!is_first && (passes_(record) || passes_(scene_.geometries[first->second])))
+                warn(first->second, g, 0.0);
         }
     }
 
@@ -266,27 +281,26 @@ class Search {
         // Of two bodies, one ends where the other begins: the later one gives way. If both are on the same side, nobody knows
         // which is to be inside of the other.
         const bool unclear = a_can && b_can && glm::dot(a.normal, b.normal) > 0.0;
-        if (unclear || (!a_can && !b_can)) return warn(a.geometry, b.geometry);
+        const double enough = kGap * same_place(a, b);
+        if (unclear || (!a_can && !b_can)) return warn(a.geometry, b.geometry, enough);
         const auto order = [](const PlaneTriangle& t) { return std::tie(t.instance, t.geometry, t.index); };
         const bool a_moves = a_can && (!b_can || order(a) > order(b));
         const PlaneTriangle& moved = a_moves ? a : b;
         const PlaneTriangle& fixed = a_moves ? b : a;
         Inset& inset = insets_.try_emplace(moved.geometry, scene_, moved.geometry).first->second;
         // Bodies of one mesh have to be told apart, and moved apart.
-        if (one_mesh && (inset.bodies().share_vertices ||
-                         inset.bodies().of_triangle[moved.index] == inset.bodies().of_triangle[fixed.index]))
-            return warn(a.geometry, b.geometry);
-        const double reach = std::max({a.largest, b.largest, object_reach_});
-        const double gap = (kGap * reach + distance_from_plane(fixed, moved)) * moved.scale;
+        if (one_mesh && inset.bodies().of_triangle[moved.index] == inset.bodies().of_triangle[fixed.index])
+            return warn(a.geometry, b.geometry, enough);
+        const double gap = (kGap * same_place(a, b) + distance_from_plane(fixed, moved)) * moved.scale;
         const PlaneTriangle own = plane_triangle(scene_, moved.geometry, moved.index);
         if (inset.has(own, gap)) return;
-        if (gap > kMostChange * size_of(moved.geometry)) return warn(a.geometry, b.geometry);
+        if (gap > kMostChange * size_of(moved.geometry)) return warn(a.geometry, b.geometry, enough);
         inset.add(own, gap, one_mesh);
         double& largest_gap = moved_[{moved.geometry, fixed.geometry}];
         largest_gap = std::max(largest_gap, gap);
     }
 
-    void warn(uint32_t a, uint32_t b) {
+    void warn(uint32_t a, uint32_t b, double enough) {
         const auto pair = std::minmax(a, b);
         if (!told_.insert(pair).second || told_.size() > kMostMessages) return;
         context_.diagnostics.warning(
@@ -294,7 +308,8 @@ class Search {
             fmt::format("a surface of this shape lies in the same place as {}, and light that passes through one of "
                         "them misses the other",
                         a == b ? "another one of it" : "one of the shape at " + where(pair.first)),
-            fmt::format("a gap of {:g} of the coordinates is enough, or let the shapes overlap", kGap));
+            enough > 0.0 ? fmt::format("a gap of {:.1g} is enough, or let the shapes overlap", enough)
+                         : "a gap of 3e-6 of the coordinates is enough, or let the shapes overlap");
     }
 
     // The diagonal of a mesh's box.
@@ -314,8 +329,7 @@ class Search {
     Scene& scene_;
     const std::vector<Location>& places_;
     Passing passes_;
-    double object_reach_ = 0.0;  // of the set that is searched; 0: the world
-    size_t pairs_ = 0;
+    size_t pairs_ = 0, near_ = 0;
     bool incomplete_ = false;
     std::map<uint32_t, std::optional<PlaceBox>> set_boxes_;
     std::set<std::pair<uint32_t, uint32_t>> told_;

@@ -30,8 +30,13 @@ class Inset {
  private:
     static constexpr uint32_t kAllBodies = ~0u;
 
+    // Normals of the faces at one place that are moved, and of the others.
+    struct Faces {
+        std::vector<glm::dvec3> moved, others;
+    };
+
     bool moves(const PlaneTriangle& t);
-    glm::dvec3 displacement(const std::vector<glm::dvec3>& normals) const;
+    glm::dvec3 displacement(const Faces& faces) const;
 
     const Scene& scene_;
     uint32_t geometry_;

@@ -19,6 +19,8 @@ constexpr std::array<std::array<uint32_t, 3>, 2> kHalves{{{0, 1, 3}, {0, 3, 2}}}
 constexpr double kCell = 1e-3, kNormalError = 1e-4;
 // Coordinates and what is computed of them, in parts of the largest.
 constexpr double kRounding = 4e-7;
+// Six roundings.
+constexpr double kGamma6 = 6.0 * 0x1p-24;
 // Slivers may be turned by more, and are missed.
 constexpr double kMostTurned = 1e-3;
 
@@ -64,6 +66,11 @@ void complete(PlaneTriangle& t) {
     double longest = 0.0;
     for (size_t k = 0; k < 3; ++k) longest = std::max(longest, glm::distance(t.corners[k], t.corners[(k + 1) % 3]));
     t.height = length / longest;
+    const dvec3 e1 = t.corners[1] - t.corners[0], e2 = t.corners[2] - t.corners[0];
+    const dvec3 from = glm::max(glm::abs(e1), glm::abs(e2));
+    const dvec3 products =
+        glm::abs(dvec3(e1.y * e2.z, e1.z * e2.x, e1.x * e2.y)) + glm::abs(dvec3(e1.z * e2.y, e1.x * e2.z, e1.y * e2.x));
+    t.plane_error = kGamma6 * std::min(glm::dot(from, products) / length, 16.0 * (from.x + from.y + from.z));
     // A height that is wrong by the rounding of coordinates turns the plane about the triangle, and the origin may be far away.
     t.distance_error = t.largest * (kSamePlane + std::min(kRounding * t.largest / t.height, kMostTurned));
 }
@@ -125,7 +132,15 @@ PlaneTriangle in_world(const Scene& scene, const PlaneTriangle& t, uint32_t inst
         t.normal.x * dvec3(transform.from0) + t.normal.y * dvec3(transform.from1) + t.normal.z * dvec3(transform.from2);
     if (glm::dot(world.normal, n) < 0.0) world.normal = -world.normal;
     world.scale = glm::length(n);
+    // Rays are rounded in the object's space, too.
+    world.largest = std::max(world.largest, t.largest / world.scale);
+    world.plane_error = std::max(world.plane_error, t.plane_error / world.scale);
     return world;
+}
+
+double same_place(const PlaneTriangle& a, const PlaneTriangle& b) {
+    // A ray starts outside of the error of one plane, which its hit has as well, and meets the other one up to its error nearer.
+    return kSamePlane * std::max(a.largest, b.largest) + 2.0 * (a.plane_error + b.plane_error);
 }
 
 double distance_from_plane(const PlaneTriangle& a, const PlaneTriangle& b) {
@@ -135,7 +150,7 @@ double distance_from_plane(const PlaneTriangle& a, const PlaneTriangle& b) {
 }
 
 bool in_one_plane(const PlaneTriangle& a, const PlaneTriangle& b) {
-    return distance_from_plane(a, b) <= kSamePlane * std::max(a.largest, b.largest);
+    return distance_from_plane(a, b) <= same_place(a, b);
 }
 
 // No edge's line separates them.
@@ -192,13 +207,10 @@ std::vector<uint64_t> Plane::cells() const {
 
 PlaceBox::PlaceBox(const PlaneTriangle& t) : low(t.corners[0]), high(t.corners[0]) {
     for (const dvec3& p : t.corners) low = glm::min(low, glm::vec3(p)), high = glm::max(high, glm::vec3(p));
-    add_margin(t.largest);
+    widen((kSamePlane + kRounding) * t.largest + 2.0 * t.plane_error);
 }
 
-void PlaceBox::add_margin(double largest_coordinate) {
-    const float margin = float((kSamePlane + kRounding) * largest_coordinate);
-    low -= margin, high += margin;
-}
+void PlaceBox::widen(double margin) { low -= float(margin), high += float(margin); }
 
 bool PlaceBox::meets(const PlaceBox& other) const {
     return low.x <= other.high.x && other.low.x <= high.x && low.y <= other.high.y && other.low.y <= high.y &&
@@ -209,14 +221,15 @@ void PlaceBox::add(const PlaceBox& other) { low = glm::min(low, other.low), high
 
 // The corners of the smaller one are that close to the plane of the other one.
 bool TriangleTree::Entry::may_be_in_one_plane(const PlaneTriangle& t) const {
-    const double most = std::max(t.largest, double(largest));
-    const double turned = 4.0 * kSamePlane * most / std::min(t.height, double(height)) + 1e-5;
+    const double distance =
+        kSamePlane * std::max(t.largest, double(largest)) + 2.0 * (t.plane_error + double(plane_error));
+    const double turned = 4.0 * distance / std::min(t.height, double(height)) + 1e-5;
     return glm::length(glm::cross(t.normal, dvec3(normal))) <= turned;
 }
 
 void TriangleTree::add(const PlaneTriangle& t, uint32_t group) {
-    entries_.push_back(
-        {PlaceBox(t), glm::vec3(t.normal), float(t.height), float(t.largest), group, t.instance, t.geometry, t.index});
+    entries_.push_back({PlaceBox(t), glm::vec3(t.normal), float(t.height), float(t.largest), float(t.plane_error),
+                        group, t.instance, t.geometry, t.index});
 }
 
 void TriangleTree::build() {

@@ -14,7 +14,7 @@
 namespace lampyris {
 
 // Faces that are closer than this, in parts of the coordinates, are in the same place: rays start about 4e-7 beyond a face, and up to
-// three times as far beyond oblique ones, and both faces are rounded.
+// three times as far beyond oblique ones, and both faces are rounded. The error of their planes comes on top of it.
 constexpr double kSamePlane = 2.4e-6;
 
 // A triangle of a mesh, half of a patch (all of it, if it is plane) or a part of a disk, in the space of its set or in the world.
@@ -23,7 +23,8 @@ struct PlaneTriangle {
     std::array<size_t, 3> vertices{};  // in Scene::positions; not of disks
     // To the outside, as kernels see it; unit length, and 0 for a triangle without area.
     glm::dvec3 normal{0.0};
-    double largest = 0.0;         // coordinate
+    double largest = 0.0;         // coordinate that rays have there
+    double plane_error = 0.0;     // how far from it tracers may find its plane (triangle_plane_error, shapes.h)
     double height = 0.0;          // on its longest side
     double distance_error = 0.0;  // of Plane::distance, from the rounding of its corners
     double scale = 1.0;           // a length along the normal in the space of its set, over the same one here
@@ -38,6 +39,8 @@ std::array<size_t, 3> triangle_vertices(const Scene& scene, uint32_t geometry, u
 // The same in the world, as part of an instance of its set.
 PlaneTriangle in_world(const Scene& scene, const PlaneTriangle& t, uint32_t instance);
 
+// The distance up to which triangles are in the same place.
+double same_place(const PlaneTriangle& a, const PlaneTriangle& b);
 // The largest distance of b's corners from the plane of a.
 double distance_from_plane(const PlaneTriangle& a, const PlaneTriangle& b);
 bool in_one_plane(const PlaneTriangle& a, const PlaneTriangle& b);
@@ -60,7 +63,7 @@ struct PlaceBox {
     explicit PlaceBox(const PlaneTriangle& t);
     bool meets(const PlaceBox& other) const;
     void add(const PlaceBox& other);
-    void add_margin(double largest_coordinate);
+    void widen(double margin);
 };
 
 // Triangles to be found by their place: a tree of boxes.
@@ -69,7 +72,7 @@ class TriangleTree {
     struct Entry {
         PlaceBox box;
         glm::vec3 normal;
-        float height, largest;  // of the triangle
+        float height, largest, plane_error;  // of the triangle
         uint32_t group, instance, geometry, index;
         // False if their normals differ by so much that they are not in one plane. It is cheap.
         bool may_be_in_one_plane(const PlaneTriangle& t) const;
