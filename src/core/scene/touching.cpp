@@ -218,16 +218,18 @@ class Search {
 
     // Of an instance's triangles, in the world: the box of its set's box.
     std::optional<PlaceBox> box_of(uint32_t instance) {
-        const auto [known, is_new] = set_boxes_.try_emplace(scene_.instance_sets[instance]);
-        if (is_new)
-            for_each_triangle(scene_.sets[scene_.instance_sets[instance]], [&](const PlaneTriangle& t) {
-                if (known->second)
-                    known->second->add(PlaceBox(t));
+        const uint32_t set = scene_.instance_sets[instance];
+        const auto added = set_boxes_.try_emplace(set);
+        std::optional<PlaceBox>& box = added.first->second;
+        if (added.second)
+            for_each_triangle(scene_.sets[set], [&box](const PlaneTriangle& t) {
+                if (box)
+                    box->add(PlaceBox(t));
                 else
-                    known->second = PlaceBox(t);
+                    box = PlaceBox(t);
             });
-        if (!known->second) return std::nullopt;
-        return transformed(*known->second, scene_.instances[instance].transform);
+        if (!box) return std::nullopt;
+        return transformed(*box, scene_.instances[instance].transform);
     }
 
     // Whether a triangle and one that lets light pass, whose boxes meet, are in the same place. False to end the search.
