@@ -173,6 +173,42 @@ TEST_F(Exr, ExrsThatAreNoPicturesAreRefused) {
               std::string::npos);
 }
 
+// OpenEXR reads a value of its type's size, and goes on after it: as attributes, it then takes whatever is there, of any length.
+TEST_F(Exr, ValuesEndWhereTheirAttributesDo) {
+    write_image(path("plain.exr"), sample_image(4, 4, {"R", "G", "B"}));
+    std::ifstream plain(path("plain.exr"), std::ios::binary);
+    const std::string bytes(std::istreambuf_iterator<char>(plain), {});
+    const auto with = [&](const std::string& type, const std::string& value) {
+        std::string attribute = std::string("x") + '\0' + type + '\0';
+        for (int byte = 0; byte < 4; ++byte) attribute += char(value.size() >> (8 * byte));
+        write_bytes("value.exr", bytes.substr(0, 8) + attribute + value + bytes.substr(8));
+        return path("value.exr");
+    };
+    const std::string refused = "the attribute 'x' of type '";
+    for (const auto& [type, value] :
+         std::vector<std::pair<std::string, std::string>>{{"v3f", std::string(8, '\0')},
+                                                          {"v3f", std::string(16, '\0')},
+                                                          {"timecode", std::string(7, '\0')},
+                                                          {"preview", std::string(8, '\1')},
+                                                          {"preview", std::string("\1\0\0\0\2\0\0\0abcd", 12)},
+                                                          {"preview", "abc"},
+                                                          {"stringvector", std::string("\5\0\0\0abcd", 8)},
+                                                          {"stringvector", std::string("\xff\xff\xff\xff", 4)},
+                                                          {"stringvector", "ab"}})
+        EXPECT_NE(message_of([&] { read_image(with(type, value)); }, ExitCode::kBadInput).find(refused + type + "'"),
+                  std::string::npos)
+            << type << " " << value.size();
+    for (const auto& [type, value] :
+         std::vector<std::pair<std::string, std::string>>{{"v3f", std::string(12, '\0')},
+                                                          {"preview", std::string("\1\0\0\0\1\0\0\0abcd", 12)},
+                                                          {"stringvector", std::string("\4\0\0\0abcd\0\0\0\0", 12)},
+                                                          {"somebody's own", "abc"}}) {
+        // What is wrong then is the place of the chunks.
+        const std::string said = message_of([&] { read_image(with(type, value)); }, ExitCode::kBadInput);
+        EXPECT_EQ(said.find(refused), std::string::npos) << type << ": " << said;
+    }
+}
+
 TEST_F(Exr, UnsignedChannelsOfAnExrAreCounts) {
     OIIO::ImageSpec spec(2, 1, 1, OIIO::TypeDesc::UINT32);
     spec.channelnames = {"samples"};

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <string>
 
 namespace lampyris {
 namespace {
@@ -53,6 +55,64 @@ void check_channels(std::ifstream& file, std::streamoff bytes) {
         throw InputError("its header is damaged: the list of channels has another length than it says");
 }
 
+// Values of these types have one size, which the C++ interface reads, whatever the attribute says of its length.
+const std::map<std::string, int32_t>& sizes_of_types() {
+    static const std::map<std::string, int32_t> sizes{{"box2f", 16},
+                                                      {"box2i", 16},
+                                                      {"chromaticities", 32},
+                                                      {"compression", 1},
+                                                      {"deepImageState", 1},
+                                                      {"double", 8},
+                                                      {"envmap", 1},
+                                                      {"float", 4},
+                                                      {"int", 4},
+                                                      {"keycode", 28},
+                                                      {"lineOrder", 1},
+                                                      {"m33d", 72},
+                                                      {"m33f", 36},
+                                                      {"m44d", 128},
+                                                      {"m44f", 64},
+                                                      {"rational", 8},
+                                                      {"tiledesc", 9},
+                                                      {"timecode", 8},
+                                                      {"v2d", 16},
+                                                      {"v2f", 8},
+                                                      {"v2i", 8},
+                                                      {"v3d", 24},
+                                                      {"v3f", 12},
+                                                      {"v3i", 12}};
+    return sizes;
+}
+
+// A preview is its width and height, and four bytes for each pixel.
+bool is_preview(std::ifstream& file, int32_t bytes) {
+    uint32_t sides[2] = {};
+    return bytes >= 8 && file.read(reinterpret_cast<char*>(sides), sizeof sides) && sides[0] <= 0xffffu &&
+           sides[1] <= 0xffffu && 8 + 4 * uint64_t(sides[0]) * sides[1] == uint64_t(bytes);
+}
+
+// A list of texts, each after its length.
+bool is_list_of_texts(std::ifstream& file, int32_t bytes) {
+    int64_t left = bytes;
+    while (left > 0) {
+        int32_t length = 0;
+        if (!file.read(reinterpret_cast<char*>(&length), sizeof length) || length < 0) return false;
+        left -= 4 + int64_t(length);
+        file.seekg(length, std::ios::cur);
+    }
+    return left == 0;
+}
+
+// The C++ interface reads on where a value ends, which has to be where its attribute does.
+void check_value(std::ifstream& file, const std::string& name, const std::string& type, int32_t bytes) {
+    if (type == "chlist") return check_channels(file, bytes);
+    const auto known = sizes_of_types().find(type);
+    if ((known != sizes_of_types().end() && known->second != bytes) ||
+        (type == "preview" && !is_preview(file, bytes)) || (type == "stringvector" && !is_list_of_texts(file, bytes)))
+        throw InputError(fmt::format("its header is damaged: the attribute '{}' of type '{}' is said to have {} bytes",
+                                     name, type, bytes));
+}
+
 // Names and types of a header's attributes end with a zero byte; a length of four bytes and the value follow.
 void check_attributes(const std::string& path, int64_t size) {
     std::ifstream file(path, std::ios::binary);
@@ -67,7 +127,7 @@ void check_attributes(const std::string& path, int64_t size) {
                 fmt::format("its header is damaged: the attribute '{}' is said to have {} bytes, and {} follow", name,
                             bytes, left));
         const std::streamoff next = std::streamoff(file.tellg()) + bytes;
-        if (type == "chlist") check_channels(file, bytes);
+        check_value(file, name, type, bytes);
         file.seekg(next);
     }
     if (!file) throw InputError("its header is damaged: it does not end");
