@@ -43,12 +43,45 @@ Image::Storage storage_of(const OIIO::TypeDesc& type) {
     }
 }
 
+// OpenImageIO's name for the format of a file's first bytes; empty if it is none of those that are read. OpenImageIO knows more:
+// they are not tried, since nobody has looked at what damaged files make of them. A TGA has no signature (Truevision's specification,
+// 2.0: the kinds of colour map and picture, and the bits of a pixel).
+std::string format_of(std::string_view head) {
+    const auto begins = [head](std::string_view with) { return head.starts_with(with); };
+    if (begins("\x89PNG\r\n\x1a\n")) return "png";
+    if (begins("\xff\xd8\xff")) return "jpeg";
+    for (const std::string_view tiff : {std::string_view("II*\0", 4), std::string_view("MM\0*", 4),
+                                        std::string_view("II+\0", 4), std::string_view("MM\0+", 4)})
+        if (begins(tiff)) return "tiff";
+    if (begins("BM")) return "bmp";
+    if (begins("#?")) return "hdr";
+    if (head.size() > 2 && head[0] == 'P' && head[1] >= '1' && head[1] <= '6' &&
+        std::isspace(static_cast<unsigned char>(head[2])))
+        return "pnm";
+    constexpr std::string_view kPictures("\1\2\3\x9\xa\xb"), kBits("\x8\xf\x10\x18\x20");
+    if (head.size() >= 18 && static_cast<unsigned char>(head[1]) <= 1 &&
+        kPictures.find(head[2]) != std::string_view::npos && kBits.find(head[16]) != std::string_view::npos)
+        return "targa";
+    return {};
+}
+
+// OpenImageIO crashes on compressed pixels of other sizes than its decoder has.
+void check_bmp(std::string_view head) {
+    const auto number = [head](size_t at) {
+        uint32_t value = 0;
+        std::memcpy(&value, head.data() + at, sizeof value);
+        return value;
+    };
+    constexpr uint32_t kOldHeader = 12;  // of OS/2: it has no compression
+    if (head.size() < 18 || (number(14) != kOldHeader && head.size() < 34)) throw InputError("its header is damaged");
+    if (number(14) != kOldHeader && number(30) != 0) throw InputError("it is a compressed BMP, which is not read");
+}
+
 // libpng makes room for as many bytes of a chunk as a damaged file claims (PNG's specification, 5.3: a length of four
 // bytes, most significant first, a type of four, the data, and a check of four).
 void check_png_chunks(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
-    char signature[8] = {};
-    if (!file.read(signature, 8) || std::memcmp(signature, "\x89PNG\r\n\x1a\n", 8) != 0) return;
+    file.seekg(8);
     const auto size = int64_t(std::filesystem::file_size(path));
     unsigned char head[8];
     while (file.read(reinterpret_cast<char*>(head), 8)) {
@@ -61,12 +94,20 @@ void check_png_chunks(const std::string& path) {
 }
 
 Image read(const std::string& path, uint64_t max_memory) {
-    check_png_chunks(path);
-    OIIO::ImageSpec hints;
+    char bytes[64];
+    std::ifstream file(path, std::ios::binary);
+    file.read(bytes, sizeof bytes);
+    const std::string_view head(bytes, size_t(file.gcount()));
+    const std::string format = format_of(head);
+    if (format.empty())
+        throw InputError("its format is not known: EXR, PFM, PNG, JPEG, TIFF, TGA, BMP, HDR and PNM are");
+    if (format == "bmp") check_bmp(head);
+    if (format == "png") check_png_chunks(path);
+    OIIO::ImageSpec hints, spec;
     hints["oiio:UnassociatedAlpha"] = 1;  // do not multiply colour by alpha
-    const auto input = OIIO::ImageInput::open(path, &hints);
+    const auto input = OIIO::ImageInput::create(format);
     if (!input) throw InputError(reason(OIIO::geterror(), path));
-    const OIIO::ImageSpec& spec = input->spec();
+    if (!input->open(path, spec, hints)) throw InputError(reason(input->geterror(), path));
     if (spec.deep) throw InputError("it is a deep image, which has no single value per pixel");
     if (spec.depth > 1) throw InputError("it is a volume, not an image");
     if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0) throw InputError("it has no pixels");

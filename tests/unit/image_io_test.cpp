@@ -92,6 +92,33 @@ TEST_F(ImageIo, PngIsReadAsLightOrAsStored) {
     EXPECT_EQ(light.at(0, 0, 0), 1.0f);
 }
 
+// By what they hold: the names say nothing.
+TEST_F(ImageIo, FormatsAreKnownByTheirBytes) {
+    const std::string corpus = LAMPYRIS_SOURCE_DIR "/tests/fuzz/corpus/image/";
+    for (const char* name :
+         {"tiny.jpg", "tiny.tif", "tiny.png", "tiny.bmp", "tiny.tga", "tiny.hdr", "tiny.pfm", "picture.ppm"}) {
+        fs::copy_file(corpus + name, path("picture.exr"), fs::copy_options::overwrite_existing);
+        const Image image = read_image(path("picture.exr"));
+        EXPECT_GT(image.width * image.height, 0) << name;
+    }
+    const Image tiff = read_image(corpus + "tiny.tif", {.linear = false});
+    ASSERT_EQ(tiff.width, 4);
+    EXPECT_FLOAT_EQ(tiff.at(3, 2, 0), 180.0f / 255.0f);
+    EXPECT_FLOAT_EQ(tiff.at(3, 2, 1), 160.0f / 255.0f);
+    // Others that OpenImageIO would try, and what it would crash on.
+    for (const auto& [bytes, said] :
+         std::vector<std::pair<std::string, std::string>>{{"GIF89a" + std::string(64, '\1'), "its format is not known"},
+                                                          {"8BPS" + std::string(64, '\1'), "its format is not known"},
+                                                          {"DDS " + std::string(200, '\1'), "its format is not known"},
+                                                          {"BM", "its header is damaged"}}) {
+        write_bytes("other.png", bytes);
+        EXPECT_NE(message_of([&] { read_image(path("other.png")); }, ExitCode::kBadInput).find(said),
+                  std::string::npos);
+    }
+    EXPECT_NE(message_of([&] { read_image(corpus + "packed.bmp"); }, ExitCode::kBadInput).find("compressed BMP"),
+              std::string::npos);
+}
+
 TEST_F(ImageIo, UnreadableFilesAreNamedWithTheReason) {
     EXPECT_NE(message_of([&] { read_image(path("none.exr")); }, ExitCode::kBadInput).find("No such file"),
               std::string::npos);
