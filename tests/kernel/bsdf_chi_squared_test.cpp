@@ -42,7 +42,7 @@ std::vector<Case> cases() {
 
 TEST(BsdfChiSquared, SamplesFollowTheDensity) {
     std::vector<Case> all = cases();
-    std::vector<std::string> backends = usable_backends();
+    std::vector<std::string> backends = kernel_backends();
     double level = kFalseAlarm / double(all.size() * backends.size());
     for (const std::string& backend : backends) {
         for (const Case& c : all) {
@@ -56,8 +56,8 @@ TEST(BsdfChiSquared, SamplesFollowTheDensity) {
 
 // The power of the test above: densities that are slightly wrong are rejected.
 TEST(BsdfChiSquared, RejectsWrongDensities) {
-    double level = kFalseAlarm / double(cases().size() * usable_backends().size());
-    BsdfProber& prober = BsdfProber::on(usable_backends().front());
+    double level = kFalseAlarm / double(cases().size() * kernel_backends().size());
+    BsdfProber& prober = BsdfProber::on(kernel_backends().front());
     auto p_of = [&](BsdfProbe sampled, BsdfProbe density) {
         sampled.wo = density.wo = vec4(direction(0.7, 1), 0);
         return chi_squared(prober, sampled, density).p;

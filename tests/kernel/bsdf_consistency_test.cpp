@@ -41,7 +41,7 @@ double tolerance(const BsdfProbe& p) {
 }
 
 TEST(BsdfConsistency, SamplesSayWhatEvaluationSays) {
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         for (size_t i = 0; i < rough_materials().size(); ++i) {
             for (double c : {0.95, 0.4, 0.05, -0.7, -0.1}) {
                 for (uint transport : {kRadiance, kImportance}) {
@@ -75,7 +75,7 @@ TEST(BsdfConsistency, DensitiesOfBothDirections) {
         pairs.insert(pairs.end(), {a, b});
         swapped.insert(swapped.end(), {b, a});
     }
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         BsdfProber& prober = BsdfProber::on(backend);
         for (size_t m = 0; m < rough_materials().size(); ++m) {
             for (const uint transport : {kRadiance, kImportance}) {
@@ -106,7 +106,7 @@ TEST(BsdfConsistency, ValuesAreReciprocal) {
         pairs.insert(pairs.end(), {a, b});
         swapped.insert(swapped.end(), {b, a});
     }
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         BsdfProber& prober = BsdfProber::on(backend);
         for (size_t m = 0; m < rough_materials().size(); ++m) {
             BsdfProbe probe = rough_materials()[m];
@@ -143,7 +143,7 @@ TEST(BsdfConsistency, SpecularDirectionsAndSharesAreExact) {
             inputs.insert(inputs.end(), {vec4(wo, float(uniform(random))), vec4(0, 0, 1, float(i % 3 == 0)),
                                          vec4(0.3f, 0.6f, 0, 0), vec4(0)});
         }
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         auto samples = BsdfProber::samples(BsdfProber::on(backend).run(Probe::everything, probes, inputs, 1, 4));
         for (size_t i = 0; i < samples.size(); ++i) {
             const ProbeSample& s = samples[i];
@@ -172,7 +172,7 @@ TEST(BsdfConsistency, SpecularDirectionsAndSharesAreExact) {
 }
 
 TEST(BsdfConsistency, ConductorFresnelMatchesComplexArithmetic) {
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         std::vector<BsdfProbe> probes;
         std::vector<vec4> inputs;
         for (float n : {0.0f, 0.05f, 0.2f, 1.0f, 1.5f, 5.0f})
@@ -239,7 +239,7 @@ TEST(BsdfConsistency, NothingDivergesForAnyInput) {
         inputs.insert(inputs.end(),
                       {vec4(wo, number()), vec4(wi, float(random() % 2)), vec4(number(), number(), 0, 0), vec4(0)});
     }
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         auto samples = BsdfProber::samples(BsdfProber::on(backend).run(Probe::everything, probes, inputs, 1, 4));
         std::map<uint, size_t> found;
         size_t wrong = 0;

@@ -113,8 +113,8 @@ TEST(BsdfFurnace, LosslessMaterialsReturnAllEnergy) {
                                        thin_dielectric(1.5f),
                                        conductor(0, 1000, 0, 0)};
     std::vector<double> cosines = {1, 0.7, 0.2, 0.01, -0.9, -0.3};
-    double z = normal_threshold(kFalseAlarm / 3 / double(lossless.size() * cosines.size() * usable_backends().size()));
-    for (const std::string& backend : usable_backends()) {
+    double z = normal_threshold(kFalseAlarm / 3 / double(lossless.size() * cosines.size() * kernel_backends().size()));
+    for (const std::string& backend : kernel_backends()) {
         for (size_t i = 0; i < lossless.size(); ++i) {
             for (double c : cosines) {
                 BsdfProbe probe = lossless[i];
@@ -129,8 +129,8 @@ TEST(BsdfFurnace, LosslessMaterialsReturnAllEnergy) {
 }
 
 TEST(BsdfFurnace, SmoothGlassSharesByFresnel) {
-    double z = normal_threshold(kFalseAlarm / 3 / double(12 * usable_backends().size()));
-    for (const std::string& backend : usable_backends()) {
+    double z = normal_threshold(kFalseAlarm / 3 / double(12 * kernel_backends().size()));
+    for (const std::string& backend : kernel_backends()) {
         for (float eta : {1.5f, 1.33f, 0.8f}) {
             for (double c : {0.95, 0.3, -0.8, -0.6}) {
                 BsdfProbe probe = dielectric(eta, 0, 0);
@@ -169,7 +169,7 @@ TEST(BsdfFurnace, RoughMaterialsMatchQuadrature) {
     };
     std::vector<double> cosines = {0.95, 0.5, 0.1, -0.7};
     double z =
-        normal_threshold(kFalseAlarm / 3 / double(2 * materials.size() * cosines.size() * usable_backends().size()));
+        normal_threshold(kFalseAlarm / 3 / double(2 * materials.size() * cosines.size() * kernel_backends().size()));
     for (const Rough& m : materials) {
         for (double c : cosines) {
             BsdfProbe probe = m.probe;
@@ -177,7 +177,7 @@ TEST(BsdfFurnace, RoughMaterialsMatchQuadrature) {
             probe.what.z = kImportance;
             Albedo albedo = ggx_albedo(dvec3(probe.wo), m.ax, m.ay, m.n, m.k, m.glass);
             if (!m.glass && c < 0) albedo = ggx_albedo(-dvec3(probe.wo), m.ax, m.ay, m.n, m.k, false);
-            for (const std::string& backend : usable_backends()) {
+            for (const std::string& backend : kernel_backends()) {
                 BsdfProber& prober = BsdfProber::on(backend);
                 Energy e = sampled_energy(prober, probe);
                 double slack = 5e-5;  // of the quadrature
@@ -193,7 +193,7 @@ TEST(BsdfFurnace, RoughMaterialsMatchQuadrature) {
 // With compensation, a lossless rough mirror keeps its energy, except for the fit's error (0.0065 of 1 - E, over E >= 0.35).
 // Without it, it loses the energy that single scattering loses.
 TEST(BsdfFurnace, CompensationReturnsTheMissingEnergy) {
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         BsdfProber& prober = BsdfProber::on(backend);
         for (float alpha : {0.05f, 0.2f, 0.5f, 1.0f}) {
             for (double c : {1.0, 0.6, 0.25, 0.1}) {

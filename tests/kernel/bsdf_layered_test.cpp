@@ -80,7 +80,7 @@ Moments evaluated(BsdfProber& prober, const BsdfProbe& probe) {
 
 TEST(BsdfLayered, MatchesIndependentSimulation) {
     std::vector<Case> all = cases();
-    std::vector<std::string> backends = usable_backends();
+    std::vector<std::string> backends = kernel_backends();
     double z = normal_threshold(kFalseAlarm / double(12 * all.size() * backends.size()));
     for (const Case& c : all) {
         BsdfProbe probe = c.probe();
@@ -110,7 +110,7 @@ TEST(BsdfLayered, MatchesIndependentSimulation) {
 
 // Without MATERIAL_EXACT_COAT: the same under a smooth coat, but too bright by some per cent under a rough one, as pbrt is.
 TEST(BsdfLayered, DefaultFollowsPbrtsWeights) {
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         BsdfProber& prober = BsdfProber::on(backend);
         for (const Case& c : cases()) {
             if (c.layers.metal || c.layers.albedo > 0 || c.cosine < 0.5) continue;
@@ -131,7 +131,7 @@ TEST(BsdfLayered, DefaultFollowsPbrtsWeights) {
 // The density is approximate, but must remain a sensible weight: positive wherever light is scattered to, and with an integral
 // of order one. (pbrt uses densities inside the coat for densities outside, which are up to eta^2 smaller.)
 TEST(BsdfLayered, DensityIsPositiveAndOfOrderOne) {
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         BsdfProber& prober = BsdfProber::on(backend);
         for (const Case& c : cases()) {
             BsdfProbe probe = c.probe();
@@ -166,8 +166,8 @@ TEST(BsdfLayered, ClosedFormIsTheWalksExpectation) {
             clear.back().kind.z = depth;
             clear.back().wo = vec4(direction(0.6, 1), 0);
         }
-    double z = normal_threshold(kFalseAlarm / double(4 * clear.size() * usable_backends().size()));
-    for (const std::string& backend : usable_backends()) {
+    double z = normal_threshold(kFalseAlarm / double(4 * clear.size() * kernel_backends().size()));
+    for (const std::string& backend : kernel_backends()) {
         BsdfProber& prober = BsdfProber::on(backend);
         for (BsdfProbe probe : clear) {
             std::string what =
@@ -191,7 +191,7 @@ TEST(BsdfLayered, ClosedFormIsTheWalksExpectation) {
 
 // Both sides show the coat, and the flip of both directions changes nothing.
 TEST(BsdfLayered, IsTwoSided) {
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         for (const Case& c : cases()) {
             BsdfProbe probe = c.probe();
             std::vector<vec4> up, down;

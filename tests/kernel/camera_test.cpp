@@ -51,7 +51,7 @@ std::vector<FilterCase> filters() {
 TEST(Camera, PixelFiltersAreSampled) {
     constexpr uint32_t kSamples = 200000;
     constexpr double kAlpha = 1e-6;
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         const auto device = create_device(backend);
         for (const FilterCase& f : filters()) {
             SCOPED_TRACE(backend + ", " + f.name);
@@ -128,7 +128,7 @@ kernel::CameraRecord camera(uint32_t kind) {
 }
 
 TEST(Camera, RaysGoThroughTheirPixels) {
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         SCOPED_TRACE(backend);
         const auto device = create_device(backend);
         const std::vector<vec4> inputs = {
@@ -152,7 +152,7 @@ TEST(Camera, RaysGoThroughTheirPixels) {
 // All rays of a film point meet in the plane of focus, and start all over the lens.
 TEST(Camera, LensRaysMeetInThePlaneOfFocus) {
     constexpr float kRadius = 0.25f, kFocus = 3.0f;
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         SCOPED_TRACE(backend);
         const auto device = create_device(backend);
         for (const uint32_t kind : {kernel::CAMERA_PERSPECTIVE, kernel::CAMERA_ORTHOGRAPHIC}) {

@@ -102,7 +102,7 @@ void set_camera(Scene& scene, const CameraCase& c) {
 // The importance is that of rays through neighbouring film points, by differences: the solid angle, or the cross section of the beam,
 // that a pixel covers at the point.
 TEST(Connect, UndoesTheCamerasRays) {
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         Probe probe(backend);
         for (const CameraCase& c : cameras()) {
             SCOPED_TRACE(backend + ", " + c.name);
@@ -148,7 +148,7 @@ TEST(Connect, UndoesTheCamerasRays) {
 }
 
 TEST(Connect, PointsBehindTheCameraAreNotSeen) {
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         Probe probe(backend);
         for (const CameraCase& c : cameras()) {
             SCOPED_TRACE(backend + ", " + c.name);
@@ -184,7 +184,7 @@ TEST(Connect, SplatsFollowThePixelFilter) {
         {"mitchell", kernel::PIXEL_FILTER_GAUSSIAN, 2, 2, mitchell(2), mitchell(2)},
         {"sinc", kernel::PIXEL_FILTER_GAUSSIAN, 4, 3, sinc(4), sinc(3)}};
     constexpr size_t kSplats = 40000;
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         Probe probe(backend);
         for (const FilterCase& f : filters) {
             SCOPED_TRACE(backend + ", " + f.name);
@@ -232,7 +232,7 @@ TEST(Connect, SplatsFollowThePixelFilter) {
 TEST(Connect, SumsOfSplatsLoseNothing) {
     constexpr size_t kSplats = 300'000, kPixels = 3;
     constexpr float kQuantum = 0x1p-20f;
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         SCOPED_TRACE(backend);
         Probe probe(backend);
         TestScene scene;
@@ -272,7 +272,7 @@ TEST(Connect, SumsOfSplatsLoseNothing) {
 }
 
 TEST(Connect, SplatsBeyondTheSumsAreCounted) {
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         SCOPED_TRACE(backend);
         Probe probe(backend);
         TestScene scene;

@@ -47,7 +47,7 @@ std::vector<double> weights(size_t count) {
 }
 
 TEST(Distribution, EveryIntervalIsFoundByItsNumbersAndNoOthers) {
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         const auto device = create_device(backend, exact_options(backend));
         for (const size_t count : {size_t(1), size_t(3), size_t(1000), size_t(100000)}) {
             SCOPED_TRACE(backend + ", " + std::to_string(count));
@@ -86,7 +86,7 @@ TEST(Distribution, TexelsAreSampledWithTheirDensity) {
     std::vector<float> picture(w * h, 1.0f);
     for (uint32_t x = 0; x < w; ++x) picture[5 * w + x] = 0.0f;
     picture[1 * w + 1] = 1e12f;
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         SCOPED_TRACE(backend);
         const auto device = create_device(backend, exact_options(backend));
         TestScene scene;
@@ -128,7 +128,7 @@ TEST(Distribution, TexelsAreSampledWithTheirDensity) {
 // numbers, over 2^24.
 TEST(Distribution, SmallChancesAreMetAsOftenAsTheySay) {
     std::vector<float> chances = {1.0f, 0.5f, 1e-3f, 0x1p-24f, 1e-9f, 1e-30f, 0.999999f};
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         SCOPED_TRACE(backend);
         const auto device = create_device(backend, exact_options(backend));
         TestScene scene;

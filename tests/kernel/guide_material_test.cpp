@@ -42,7 +42,7 @@ double energy(const std::string& backend, const BsdfProbe& probe) {
 }
 
 TEST(GuideMaterial, ReturnsTheEnergyThatItsSceneDerives) {
-    for (const std::string& backend : usable_backends())
+    for (const std::string& backend : kernel_backends())
         for (float roughness : {0.0f, 0.3f, 1.0f}) {
             // The rule's error is below 1e-4.
             EXPECT_NEAR(energy(backend, clay(1, roughness, 1)), kPi / (kPi + (kPi / 2 - 2.0 / 3) * roughness), 2e-4);
@@ -60,7 +60,7 @@ TEST(GuideMaterial, ValuesAreReciprocal) {
         pairs.insert(pairs.end(), {a, b});
         swapped.insert(swapped.end(), {b, a});
     }
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         const auto there = prober(backend).eval(clay(0.8f, 0.7f, 1), pairs);
         const auto back = prober(backend).eval(clay(0.8f, 0.7f, 1), swapped);
         for (size_t i = 0; i < there.size(); ++i) EXPECT_NEAR(there[i].x, back[i].x, 1e-5 * (1e-3 + there[i].x));
@@ -68,7 +68,7 @@ TEST(GuideMaterial, ValuesAreReciprocal) {
 }
 
 TEST(GuideMaterial, SamplesFollowTheDensityAndSayWhatEvaluationSays) {
-    const std::vector<std::string> backends = usable_backends();
+    const std::vector<std::string> backends = kernel_backends();
     const double level = kFalseAlarm / double(std::size(kCosines) * backends.size());
     for (const std::string& backend : backends)
         for (double c : kCosines) {

@@ -34,7 +34,7 @@ LightAnswer only_sample(Device& device, TestScene& scene, vec3 ref_p) {
 }
 
 TEST(Lights, PointsShineByTheInverseSquare) {
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         SCOPED_TRACE(backend);
         const auto device = create_device(backend);
         TestScene scene;
@@ -51,7 +51,7 @@ TEST(Lights, PointsShineByTheInverseSquare) {
 
 // pbrt's spot: full inside conedelta, nothing outside the cone, a smoothstep in the cosine between (section 12.2.1).
 TEST(Lights, SpotsFallOffSmoothly) {
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         SCOPED_TRACE(backend);
         const auto device = create_device(backend);
         const double outer = std::cos(30 * kPi / 180), inner = std::cos(20 * kPi / 180);
@@ -71,7 +71,7 @@ TEST(Lights, SpotsFallOffSmoothly) {
 }
 
 TEST(Lights, DistantLightsComeFromTheirDirection) {
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         SCOPED_TRACE(backend);
         const auto device = create_device(backend);
         TestScene scene;
@@ -95,7 +95,7 @@ TEST(Lights, ProjectionsShowThePictureUpright) {
     const std::vector<Place> places = {{{-0.2f, 0.1f, 1}, 1}, {{0.2f, 0.1f, 1}, 2},  {{-0.2f, -0.1f, 1}, 3},
                                        {{0.2f, -0.1f, 1}, 4}, {{0.55f, 0.1f, 1}, 0}, {{0.2f, -0.3f, 1}, 0},
                                        {{0.2f, 0.1f, -1}, 0}, {{0.4f, 0.2f, 2}, 2}};
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         SCOPED_TRACE(backend);
         const auto device = create_device(backend);
         const dmat4 to_world =
@@ -130,7 +130,7 @@ TEST(Lights, GoniometricImagesHaveTheirPoleUp) {
     const std::vector<Place> places = {{{0.1f, 1, 0.1f}, 2, 2},   {{-0.1f, 1, 0.1f}, 1, 2},  {{0.1f, 1, -0.1f}, 2, 1},
                                        {{-0.1f, 1, -0.1f}, 1, 1}, {{0.1f, -1, 0.1f}, 3, 3},  {{-0.1f, -1, 0.1f}, 0, 3},
                                        {{0.1f, -1, -0.1f}, 3, 0}, {{-0.1f, -1, -0.1f}, 0, 0}};
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         SCOPED_TRACE(backend);
         const auto device = create_device(backend);
         for (const Place& place : places) {
@@ -146,7 +146,7 @@ TEST(Lights, GoniometricImagesHaveTheirPoleUp) {
 
 // Lights of different power and kind together give the sum of what each gives, and each is chosen with its stated probability.
 TEST(Lights, ManyLightsAddUp) {
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         SCOPED_TRACE(backend);
         const auto device = create_device(backend);
         TestScene scene;
@@ -188,7 +188,7 @@ TEST(Lights, ManyLightsAddUp) {
 
 // A picture as emission: the left half of a square shines, and a mask takes half of it.
 TEST(Lights, EmissionHasTexturesAndMasks) {
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         SCOPED_TRACE(backend);
         const auto device = create_device(backend);
         TestScene scene;
@@ -230,7 +230,7 @@ TEST(Lights, EmissionHasTexturesAndMasks) {
 
 // A light that is far, tiny or huge is sampled at its real position, with finite densities.
 TEST(Lights, ExtremeSizesStayFinite) {
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         const auto device = create_device(backend);
         const KernelHandle probe = light_probe(*device, kernel::EFFECT_QUADRICS | kernel::EFFECT_BILINEAR |
                                                             kernel::EFFECT_AREA_LIGHTS | kernel::EFFECT_QUADRIC_LIGHTS);

@@ -172,7 +172,7 @@ Fit fit(LightAsker& asker, vec3 ref_p, bool first_hit_only = false, bool folds =
 }
 
 TEST(Lights, AreaLightsAreSampledWithTheirDensity) {
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         const auto device = create_device(backend);
         const KernelHandle probe = light_probe(*device, kAreaEffects);
         for (const Case& c : area_lights()) {
@@ -208,7 +208,7 @@ TEST(Lights, InfiniteLightsAreSampledWithTheirDensity) {
     for (float& texel : picture) texel = std::uniform_real_distribution<float>(0, 1)(rng);
     for (int x = 0; x < 8; ++x) picture[3 * 8 + x] = 0;  // a black row
     picture[5 * 8 + 2] = 30;                             // a sun
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         const auto device = create_device(backend);
         const KernelHandle probe = light_probe(*device, kInfiniteEffects);
         // Constant; image; both; image of a stretched sky; then the same for samples that are weighed against those of a BSDF.
@@ -315,7 +315,7 @@ void expect_mean(const Mean& mean, double expected, double tolerance) {
 TEST(Lights, AreaLightsIrradiateAsQuadratureSays) {
     const dvec3 normal = glm::normalize(dvec3(0.2, 0.3, 1));
     const auto one = [](dvec2) { return 2.0; };
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         const auto device = create_device(backend);
         const KernelHandle probe = light_probe(*device, kAreaEffects);
         for (const Case& c : area_lights()) {
@@ -342,7 +342,7 @@ TEST(Lights, AreaLightsIrradiateAsQuadratureSays) {
 
 // Closed forms, from below: a disk of radius r at height h, and a sphere of radius r at distance h.
 TEST(Lights, IrradianceHasItsClosedForm) {
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         SCOPED_TRACE(backend);
         const auto device = create_device(backend);
         const KernelHandle probe = light_probe(*device, kAreaEffects);

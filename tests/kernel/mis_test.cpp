@@ -266,7 +266,7 @@ std::vector<float> weights_on(const std::string& backend, const Paths& all, int 
 }
 
 TEST(Mis, RecursionGivesTheWeightsOfAllStrategies) {
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         for (int beta = 1; beta <= 2; ++beta) {
             SCOPED_TRACE(backend + ", beta " + std::to_string(beta));
             const std::vector<float> found = weights_on(backend, random_paths(), beta);
@@ -292,7 +292,7 @@ TEST(Mis, BackendsAgreeToTheBit) {
     };
     for (int beta = 1; beta <= 2; ++beta) {
         const std::vector<float> expected = weights_on("cpu", random_paths(), beta);
-        for (const std::string& backend : usable_backends()) {
+        for (const std::string& backend : kernel_backends()) {
             SCOPED_TRACE(backend + ", beta " + std::to_string(beta));
             const std::vector<float> found = weights_on(backend, random_paths(), beta);
             size_t different = 0;
@@ -308,7 +308,7 @@ TEST(Mis, WeightsOfExtremePathsAreNumbers) {
     for (int beta = 1; beta <= 2; ++beta) {
         Paths extreme = paths_of(Maker(2, 5, 0, 1e-4f));
         for (size_t i = 0; i < extreme.vertices.size(); i += 5) extreme.vertices[i].normal *= i % 2 == 0 ? 0.0f : 1e-8f;
-        for (const std::string& backend : usable_backends()) {
+        for (const std::string& backend : kernel_backends()) {
             SCOPED_TRACE(backend + ", beta " + std::to_string(beta));
             for (const float weight : weights_on(backend, extreme, beta))
                 ASSERT_TRUE((weight >= 0 && weight <= 1) || weight == -1) << weight;

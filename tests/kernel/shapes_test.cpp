@@ -78,7 +78,7 @@ TEST(Shapes, QuadricsAreTheirParametricSurfaces) {
             t_aimed.push_back(2.0);
         }
     }
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         SCOPED_TRACE(backend);
         const auto device = create_device(backend);
         const auto answers = ask_shapes(*device, device->upload(scene.scene), rays);
@@ -166,7 +166,7 @@ TEST(Shapes, PartsThatAreMissingAreMissed) {
         rays.push_back({c.o, c.d, c.shape});
         rays.back().t_max = c.t * 1.001f;
     }
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         SCOPED_TRACE(backend);
         const auto device = create_device(backend);
         const auto answers = ask_shapes(*device, device->upload(scene.scene), rays);
@@ -234,7 +234,7 @@ TEST(Shapes, PatchesAreTheirParametricSurfaces) {
             aimed.push_back(uv);
         }
     }
-    for (const std::string& backend : usable_backends()) {
+    for (const std::string& backend : kernel_backends()) {
         SCOPED_TRACE(backend);
         const auto device = create_device(backend);
         const auto answers = ask_shapes(*device, device->upload(scene.scene), rays);

@@ -32,7 +32,7 @@ std::vector<glm::vec4> turned(std::vector<glm::vec4> inputs) {
 }
 
 class SpectrumOn : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Backends, SpectrumOn, testing::ValuesIn(usable_backends()), [](const auto& info) {
+INSTANTIATE_TEST_SUITE_P(Backends, SpectrumOn, testing::ValuesIn(kernel_backends()), [](const auto& info) {
     return info.param == "cpu-bvh2" ? std::string("cpu_bvh2") : info.param;
 });
 

@@ -18,6 +18,13 @@ inline std::vector<std::string> usable_backends() {
     return names;
 }
 
+// Of these, one for each build of kernels that trace no rays: those of cpu-bvh2 are the CPU's.
+inline std::vector<std::string> kernel_backends() {
+    std::vector<std::string> names = usable_backends();
+    std::erase(names, "cpu-bvh2");
+    return names;
+}
+
 // For tests that require the CPU's bits: by default, a GPU's divisions are less accurate.
 inline DeviceOptions exact_options(const std::string& backend) {
     DeviceOptions options;
