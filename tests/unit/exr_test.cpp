@@ -209,6 +209,25 @@ TEST_F(Exr, ValuesEndWhereTheirAttributesDo) {
     }
 }
 
+// And makes room for a whole tile, whatever its size.
+TEST_F(Exr, TilesAreNotMuchLargerThanThePicture) {
+    OIIO::ImageSpec spec(8, 8, 3, OIIO::TypeDesc::FLOAT);
+    spec.tile_width = spec.tile_height = 64;
+    const auto output = OIIO::ImageOutput::create(path("tiles.exr"));
+    const std::vector<float> pixels(8 * 8 * 3, 0.5f);
+    ASSERT_TRUE(output && output->open(path("tiles.exr"), spec) &&
+                output->write_image(OIIO::TypeDesc::FLOAT, pixels.data()) && output->close());
+    EXPECT_EQ(read_image(path("tiles.exr")).at(7, 7, 2), 0.5f);
+    std::ifstream file(path("tiles.exr"), std::ios::binary);
+    std::string bytes(std::istreambuf_iterator<char>(file), {});
+    const size_t at = bytes.find("tiledesc") + 9 + 4;
+    ASSERT_EQ(bytes.substr(at, 4), std::string("\x40\0\0\0", 4));
+    bytes.replace(at, 8, std::string("\0\x50\0\0\0\x50\0\0", 8));
+    write_bytes("large_tiles.exr", bytes);
+    EXPECT_NE(message_of([&] { read_image(path("large_tiles.exr")); }, ExitCode::kBadInput).find("20480x20480"),
+              std::string::npos);
+}
+
 TEST_F(Exr, UnsignedChannelsOfAnExrAreCounts) {
     OIIO::ImageSpec spec(2, 1, 1, OIIO::TypeDesc::UINT32);
     spec.channelnames = {"samples"};

@@ -62,6 +62,14 @@ Image::Storage storage_of(const Imf::ChannelList& channels) {
     return widest;
 }
 
+// OpenEXR makes room for whole tiles.
+void check_tiles(const Imf::TileDescription& tiles, int64_t width, int64_t height) {
+    constexpr int64_t kFree = 1 << 20;  // pixels
+    if (int64_t(tiles.xSize) * int64_t(tiles.ySize) > std::max(width * height, kFree))
+        throw InputError(fmt::format("its header is damaged: tiles of {}x{} pixels for a picture of {}x{}", tiles.xSize,
+                                     tiles.ySize, width, height));
+}
+
 Image read_first_part(Imf::MultiPartInputFile& file, const std::string& path, uint64_t max_memory) {
     const Imf::Header& header = file.header(0);
     if (header.hasType() && Imf::isDeepData(header.type()))
@@ -82,6 +90,7 @@ Image read_first_part(Imf::MultiPartInputFile& file, const std::string& path, ui
     if (width <= 0 || height <= 0 || names.empty()) throw InputError("it has no pixels");
     const Image::Storage storage = storage_of(channels);
     check_plausible(path, width, height, int64_t(names.size()), storage == Image::Storage::kHalf ? 2 : 4, max_memory);
+    if (header.hasTileDescription()) check_tiles(header.tileDescription(), width, height);
 
     Image image(int(width), int(height), names);
     image.storage = storage;
