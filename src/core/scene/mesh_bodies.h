@@ -13,15 +13,16 @@ struct MeshBodies {
     bool share_vertices = false;        // two of them have an entry of `positions` in common: split_shared_vertices()
 };
 
-// Triangles belong together that have an edge in common, by the positions of its ends. Where bodies touch, more than two triangles
-// meet at an edge: then a triangle goes on at the one that is met first when it is turned about the edge through the inside.
+// Triangles with a common edge (one whose ends have the same positions) belong to the same body. Where bodies touch, more than two
+// triangles meet at an edge: a triangle then continues in the one that it meets first when it is turned about the edge through the
+// inside.
 MeshBodies bodies_of_mesh(const Scene& scene, uint32_t geometry);
 
 // Gives each body vertices of its own. A mesh whose bodies share some gets new ones at the end of the scene's arrays.
 void split_shared_vertices(Scene& scene, uint32_t geometry, const MeshBodies& bodies);
 
-// False if a mesh is one body for certain: its triangles hang together by edges, by the vertices that they share, and none goes along
-// an edge in the same direction as another one. It takes a moment, where bodies_of_mesh() takes seconds for a million triangles.
+// False if a mesh is one body for certain: edges of shared vertices connect all of its triangles, and no two triangles go along an edge
+// in the same direction. It takes a moment, where bodies_of_mesh() takes seconds for a million triangles.
 bool may_have_bodies(const Scene& scene, uint32_t geometry);
 
 }  // namespace lampyris

@@ -6,7 +6,6 @@
 
 #include <glm/vec3.hpp>
 
-#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -20,7 +19,7 @@ class Inset {
 
     // Which triangles bound one body; found when it is first asked for.
     const MeshBodies& bodies();
-    // Asks for a gap between what the face in which t lies touches, and that face, of all bodies or of its own.
+    // The face in which t lies is to be moved by the gap: that of its own body, or those of all bodies in the same plane.
     void add(const PlaneTriangle& t, double gap, bool of_its_body);
     // Whether the face has a gap as large as that.
     bool has(const PlaneTriangle& t, double gap);
