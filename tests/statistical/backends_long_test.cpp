@@ -44,14 +44,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, OtherScenesTest, testing::ValuesIn(other_scenes
                          [](const auto& info) { return test_name(info.param); });
 
 // Every quotient of a kernel with rough glass.
-TEST(BackendsExactLongTest, QuotientsByIntegersAreTheSame) {
-    RenderSettings settings;
-    settings.samples = 1;
-    settings.seed = 25;
-    settings.device_settings["exact"] = "on";
-    settings.device_settings["staging"] = "on";  // as on a GPU
-    expect_agreement("reference/dielectric-rough", "vulkan", settings, 1e-5, 0.999);
-}
+TEST(BackendsExactLongTest, QuotientsByIntegersAreTheSame) { expect_exact_agreement("reference/dielectric-rough"); }
 
 class LargeScenesTest : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
 

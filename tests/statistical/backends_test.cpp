@@ -107,12 +107,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(BackendsExactTest, QuotientsByIntegersAreTheSame) {
     const auto others = other_backends();
     if (std::find(others.begin(), others.end(), "vulkan") == others.end()) GTEST_SKIP() << "no Vulkan device";
-    RenderSettings settings;
-    settings.samples = 1;
-    settings.seed = 25;
-    settings.device_settings["exact"] = "on";
-    settings.device_settings["staging"] = "on";  // as on a GPU
-    expect_agreement("reference/diffuse", "vulkan", settings, 1e-5, 0.999);
+    expect_exact_agreement("reference/diffuse");
 }
 
 // (On Vulkan one scene, for its effects; backends_long_test has all.)

@@ -99,4 +99,13 @@ Agreement expect_agreement(const std::string& scene, const std::string& other, c
     return result;
 }
 
+void expect_exact_agreement(const std::string& scene) {
+    RenderSettings settings;
+    settings.samples = 1;
+    settings.seed = 25;
+    settings.device_settings["exact"] = "on";
+    settings.device_settings["staging"] = "on";  // as on a GPU
+    expect_agreement(scene, "vulkan", settings, 1e-5, 0.999);
+}
+
 }  // namespace lampyris::test

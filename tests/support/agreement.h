@@ -36,4 +36,7 @@ std::string test_name(std::string text);
 Agreement expect_agreement(const std::string& scene, const std::string& other, const RenderSettings& settings,
                            double tolerance, double least);
 
+// One sample a pixel on Vulkan with the option for exact quotients, and copies as on a GPU.
+void expect_exact_agreement(const std::string& scene);
+
 }  // namespace lampyris::test

@@ -45,7 +45,7 @@ bool same_photons(const CollectResult& found, const CollectResult& expected, boo
 
 // Fails if one of the maps, on any of these backends that can run it, finds other photons than brute force finds on the CPU.
 void expect_exact(const std::vector<std::string>& maps, const std::vector<PhotonCase>& cases,
-                  const std::vector<std::string>& backends = usable_backends());
+                  const std::vector<std::string>& backends = kernel_backends());
 
 // Names of maps, with parameters, that guarantee exactness: each with its defaults and with the parameters that tests need.
 std::vector<std::string> exact_photon_maps();
