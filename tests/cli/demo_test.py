@@ -7,6 +7,8 @@ import subprocess
 import sys
 from html.parser import HTMLParser
 
+import pytest
+
 FIGURES = 8  # four pictures, the error maps of the CPU's two, the reference, the difference of the backends
 
 
@@ -26,11 +28,13 @@ class Page(HTMLParser):
         self.open -= tag == "figure"
 
 
-def test_the_demo_writes_images_figures_and_a_page(source_dir, program, tmp_path):
+# `users`: with lavapipe as they have it; ./dev test makes it compile faster.
+@pytest.mark.parametrize("drivers", ["test", pytest.param("users", marks=pytest.mark.long)])
+def test_the_demo_writes_images_figures_and_a_page(source_dir, program, tmp_path, drivers):
     script = source_dir / "tools/demo.py"
     command = [sys.executable, script, "--program", program, "--output", tmp_path, "--passes", "1"]
-    # As users have it: ./dev test switches lavapipe's optimizer off.
-    environment = {name: value for name, value in os.environ.items() if name != "GALLIVM_PERF"}
+    of_tests = ["GALLIVM_PERF", "LP_NATIVE_VECTOR_WIDTH"] if drivers == "users" else []
+    environment = {name: value for name, value in os.environ.items() if name not in of_tests}
     done = subprocess.run(command, capture_output=True, text=True, timeout=280, check=False, env=environment)
     assert done.returncode == 0, done.stderr
     for row in ["rendering", "passes", "photon paths", "relMSE", "FLIP"]:

@@ -12,6 +12,8 @@ from pathlib import Path
 
 import pytest
 
+from support.plugin_project import QUICK
+
 TARGET = "robustness"
 SMALL = [
     "--backends=cpu",
@@ -116,7 +118,7 @@ def plugin(source_dir, build_dir, tmp_path_factory):
     for words in [
         ["cmake", "--install", build_dir, "--prefix", folder / "lampyris"],
         ["cmake", "-S", source_dir / "examples/facing", "-B", folder / "build", "-G", "Ninja"]
-        + ["-DCMAKE_BUILD_TYPE=Release", f"-DCMAKE_PREFIX_PATH={folder / 'lampyris'}"],
+        + [*QUICK, f"-DCMAKE_PREFIX_PATH={folder / 'lampyris'}"],
         ["cmake", "--build", folder / "build"],
     ]:
         done = call([str(word) for word in words])
