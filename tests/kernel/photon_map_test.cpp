@@ -101,15 +101,12 @@ TEST(PhotonMap, CuckooFindsWhatItStashed) {
         grid.photons.push_back(make_photon(p, glm::vec3(0, 0, 1), glm::vec3(1.0f), i));
         grid.queries.emplace_back(p, grid.radius);
     }
-    for (const std::string& backend : kernel_backends()) {
-        SCOPED_TRACE(backend);
-        const auto device = create_device(backend);
-        const auto map = open_map(*device, "cuckoo:table_size=1.05,stash=1024,cell_size=2");
-        uint32_t lost = 0;
-        for (const CollectResult& found : collect(*device, *map, upload_case(*device, grid)))
-            lost += uint32_t(found.found.x != 1);
-        EXPECT_EQ(lost, 0u);
-    }
+    const auto device = create_device("cpu");
+    const auto map = open_map(*device, "cuckoo:table_size=1.05,stash=1024,cell_size=2");
+    uint32_t lost = 0;
+    for (const CollectResult& found : collect(*device, *map, upload_case(*device, grid)))
+        lost += uint32_t(found.found.x != 1);
+    EXPECT_EQ(lost, 0u);
 }
 
 TEST(PhotonMap, NoPhotonsAndNoQueriesAreNoError) {

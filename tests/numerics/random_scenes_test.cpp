@@ -7,7 +7,7 @@ namespace lampyris::test {
 namespace {
 
 TEST(RandomScenes, IntegratorsAgree) {
-    for (uint32_t seed = 1; seed <= 4; ++seed) expect_integrators_agree(seed, {"bdpt", "vcm", "mlt"});
+    for (uint32_t seed = 1; seed <= 2; ++seed) expect_integrators_agree(seed, {"bdpt", "vcm", "mlt"});
 }
 
 TEST(RandomScenes, BackendsAgree) {

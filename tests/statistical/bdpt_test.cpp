@@ -24,26 +24,32 @@ INSTANTIATE_TEST_SUITE_P(Backends, Bidirectional, testing::ValuesIn(usable_backe
 
 // ---- Against path tracing --------------------------------------------------------------------------------------------
 
-class BidirectionalScenes : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Scenes, BidirectionalScenes, testing::ValuesIn(small_scenes()),
-                         [](const auto& info) { return test_name(info.param); });
+using SceneOnBackend = std::tuple<std::string, std::string>;
+class BidirectionalScenes : public testing::TestWithParam<SceneOnBackend> {};
+std::string name_of_scene(const testing::TestParamInfo<SceneOnBackend>& info) {
+    return test_name(std::get<0>(info.param) + "_" + std::get<1>(info.param));
+}
+const auto kTracers = testing::Values("cpu", "cpu-bvh2");
+INSTANTIATE_TEST_SUITE_P(Scenes, BidirectionalScenes, testing::Combine(testing::ValuesIn(varied_scenes()), kTracers),
+                         name_of_scene);
+INSTANTIATE_TEST_SUITE_P(LongScenes, BidirectionalScenes,
+                         testing::Combine(testing::ValuesIn(further_scenes()), kTracers), name_of_scene);
 
 // Path tracing never finds a point light through glass or in a mirror: bdpt finds it on the surfaces that are seen directly.
 bool path_is_blind(const std::string& scene) { return scene == "reference/sds-point" || scene == "reference/sds-pool"; }
 
 TEST_P(BidirectionalScenes, AgreeWithPathTracing) {
-    if (path_is_blind(GetParam())) return;
-    for (const char* backend : {"cpu", "cpu-bvh2"}) {
-        RenderSettings settings = settings_of("cpu", "path:maxdepth=8", 256, 24);
-        const Rendered path = render_file(scene_path(GetParam()), settings);
-        settings.backend = backend;
-        settings.samples = 64;
-        settings.seed = 5;
-        for (const char* weights : {"balance", "power"}) {
-            settings.integrator = fmt::format("bdpt:maxdepth=8,weights={}", weights);
-            const Rendered image = render_file(scene_path(GetParam()), settings);
-            expect_same_blocks(image, path, 12, fmt::format("bdpt {} {} {}", GetParam(), backend, weights));
-        }
+    const auto& [scene, backend] = GetParam();
+    if (path_is_blind(scene)) return;
+    RenderSettings settings = settings_of("cpu", "path:maxdepth=8", 256, 24);
+    const Rendered path = render_file(scene_path(scene), settings);
+    settings.backend = backend;
+    settings.samples = 64;
+    settings.seed = 5;
+    for (const char* weights : {"balance", "power"}) {
+        settings.integrator = fmt::format("bdpt:maxdepth=8,weights={}", weights);
+        const Rendered image = render_file(scene_path(scene), settings);
+        expect_same_blocks(image, path, 12, fmt::format("bdpt {} {} {}", scene, backend, weights));
     }
 }
 

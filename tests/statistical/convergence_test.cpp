@@ -17,7 +17,7 @@ namespace {
 
 TEST(Convergence, VarianceFallsAsTheoryHasIt) {
     const double alpha = 2.0 / 3.0;
-    const ConvergenceSlopes s = measure_convergence({.alpha = alpha, .seeds = 320, .photons = 300});
+    const ConvergenceSlopes s = measure_convergence({.alpha = alpha, .seeds = 224, .photons = 300});
     for (const ConvergencePointOfSeeds& p : s.points)
         RecordProperty("after_" + std::to_string(p.passes), std::to_string(p.variance) + " variance");
     EXPECT_NEAR(s.variance, s.expected_variance, 5 * s.variance_error)
@@ -29,12 +29,12 @@ TEST(Convergence, VarianceFallsAsTheoryHasIt) {
 TEST(Convergence, BiasFallsAsTheoryHasIt) {
     const double alpha = 2.0 / 3.0;
     const ConvergenceSlopes s =
-        measure_convergence({.alpha = alpha, .seeds = 12, .passes = 1024, .first = 32, .sampler = "sobol"});
+        measure_convergence({.alpha = alpha, .seeds = 6, .passes = 1024, .first = 32, .sampler = "sobol"});
     for (const ConvergencePointOfSeeds& p : s.points)
         RecordProperty("after_" + std::to_string(p.passes), std::to_string(p.bias) + " bias");
     EXPECT_NEAR(s.bias_squared, s.expected_bias_squared, 5 * s.bias_squared_error)
         << "+- " << s.bias_squared_error << ", in the limit " << -(2 - 2 * alpha);
-    EXPECT_LT(s.bias_squared_error, 0.01);  // alpha = 0.8 has -0.4
+    EXPECT_LT(s.bias_squared_error, 0.015);  // alpha = 0.8 has -0.4
     EXPECT_NEAR(s.expected_bias_squared, -(2 - 2 * alpha), 0.05);
 }
 

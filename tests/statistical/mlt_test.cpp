@@ -65,7 +65,9 @@ void expect_same_parts(const std::string& scene, RenderSettings settings, uint32
 }
 
 class MetropolisScenes : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Scenes, MetropolisScenes, testing::ValuesIn(small_scenes()),
+INSTANTIATE_TEST_SUITE_P(Scenes, MetropolisScenes, testing::ValuesIn(varied_scenes()),
+                         [](const auto& info) { return test_name(info.param); });
+INSTANTIATE_TEST_SUITE_P(LongScenes, MetropolisScenes, testing::ValuesIn(further_scenes()),
                          [](const auto& info) { return test_name(info.param); });
 
 TEST_P(MetropolisScenes, AgreeWithPathTracing) {

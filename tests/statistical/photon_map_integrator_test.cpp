@@ -96,7 +96,7 @@ TEST_P(PhotonMapIntegratorReference, AgreesWithPathTracing) {
     const int depth = std::string(GetParam().name) == "sds-point" ? 24 : 12;
     const std::string integrator =
         fmt::format("photon_map:maxdepth={},photons=200000,radius=0.04{}", depth, GetParam().options);
-    const Mean mean = mean_of_runs(file + ".pbrt", settings_of("cpu", integrator, 8, 0), 4);
+    const Mean mean = mean_of_runs(file + ".pbrt", settings_of("cpu", integrator, 4, 0), 4);
     const double expected = reference_mean(file);
     // From four runs, the error is only known to a third (t distribution of 3 degrees of freedom), so it has a floor of 0.2 %.
     const double error = std::max(mean.error(), 0.002 * expected);

@@ -129,7 +129,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, PhotonMappingReference,
 TEST_P(PhotonMappingReference, AgreesWithPathTracing) {
     const std::string file = std::string("reference/") + GetParam().name;
     const std::string integrator = std::string("sppm:maxdepth=12,schedule=memoryless") + GetParam().options;
-    const Mean mean = mean_of_runs(file + ".pbrt", settings_of("cpu", integrator, 12, 0), 4);
+    const Mean mean = mean_of_runs(file + ".pbrt", settings_of("cpu", integrator, 6, 0), 4);
     Mean reference;
     const Image image = read_image(kScenes + file + ".exr");
     for (int y = 0; y < image.height; ++y)
@@ -170,7 +170,7 @@ TEST(PhotonMappingStructures, RayQueryGivesTheSameImage) {
 }
 
 TEST(PhotonMappingStructures, StochasticHashingIsRightInTheMean) {
-    RenderSettings s = settings_of("cpu", "sppm:maxdepth=12,schedule=memoryless", 8, 64);
+    RenderSettings s = settings_of("cpu", "sppm:maxdepth=12,schedule=memoryless", 4, 64);
     const Mean exact = mean_of_runs("reference/sds-lamp.pbrt", s, 6);
     for (const char* map : {"stochastic_hash", "stochastic_hash:slots=2", "stochastic_hash:selection=flux",
                             "stochastic_hash:selection=race", "stochastic_hash:table_size=0.0625"}) {
@@ -194,11 +194,9 @@ TEST(PhotonMappingDeterminism, ThreadsChangeNothing) {
             s.photon_map = map;
             s.threads = 1;
             const Rendered one = render_file(kScenes + "reference/sds-lamp.pbrt", s);
-            for (const unsigned threads : {2u, 7u}) {
-                s.threads = threads;
-                const Rendered many = render_file(kScenes + "reference/sds-lamp.pbrt", s);
-                EXPECT_EQ(one.image.pixels, many.image.pixels) << threads << " threads";
-            }
+            s.threads = 7;
+            const Rendered many = render_file(kScenes + "reference/sds-lamp.pbrt", s);
+            EXPECT_EQ(one.image.pixels, many.image.pixels);
         }
     }
     EXPECT_GE(compared, 8);

@@ -64,7 +64,7 @@ TEST_P(ReferenceTest, AgreesWithPbrt) {
     const std::string directory = std::string(LAMPYRIS_SOURCE_DIR) + "/scenes/reference/";
     RenderSettings settings;
     settings.backend = backend;
-    settings.samples = backend == "cpu" ? 128 : 48;
+    settings.samples = backend == "cpu" ? 64 : 48;
     if (const char* samples = std::getenv("LAMPYRIS_TEST_SAMPLES")) settings.samples = uint32_t(std::atoi(samples));
     settings.seed = 12345;
     const Rendered ours = render_file(directory + scene.name + ".pbrt", settings);

@@ -62,6 +62,18 @@ const std::vector<std::string>& scenes_of_all_effects() {
     return names;
 }
 
+static std::vector<std::string> small_scenes_that(bool vary) {
+    const std::vector<std::string>& few = scenes_of_all_effects();
+    std::vector<std::string> names = small_scenes();
+    std::erase_if(names, [&](const std::string& name) {
+        return vary != (!name.starts_with("reference/") || std::find(few.begin(), few.end(), name) != few.end());
+    });
+    return names;
+}
+
+std::vector<std::string> varied_scenes() { return small_scenes_that(true); }
+std::vector<std::string> further_scenes() { return small_scenes_that(false); }
+
 uint64_t effects_of(const std::string& scene) {
     return load_scene(SceneSource::of_file(scene_path(scene)), {}, false).scene.effects.mask();
 }

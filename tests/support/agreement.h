@@ -26,6 +26,9 @@ Agreement agreement(const Rendered& a, const Rendered& b, double tolerance);
 std::vector<std::string> small_scenes();
 // As few of scenes/reference as have the effects of all of them.
 const std::vector<std::string>& scenes_of_all_effects();
+// Of the small scenes, those and all with a closed form; and the others, whose effects these have.
+std::vector<std::string> varied_scenes();
+std::vector<std::string> further_scenes();
 uint64_t effects_of(const std::string& scene);
 std::string scene_path(const std::string& name);
 // A name that GoogleTest accepts.
