@@ -25,6 +25,15 @@ def test_each_mutant_changes_one_place(tool):
             assert tool.mutated(mutant.file, [mutant], switched) != before
 
 
+def test_each_text_is_an_expression_or_statements(tool):
+    """Or else the build with all mutants fails, since it puts them into brackets."""
+    for mutant in tool.read_list():
+        for text in (mutant.old, mutant.new):
+            depths = [text[:end].count("(") - text[:end].count(")") for end in range(len(text) + 1)]
+            assert min(depths) == depths[-1] == 0, f"{mutant.name}: {text}"
+            assert not text.startswith(("||", "&&", "*", "/", "+", "?", ":", ",")), f"{mutant.name}: {text}"
+
+
 def test_each_mutant_names_tests(tool, source_dir):
     known = {path.stem for path in source_dir.glob("tests/*/*_test.cpp")}
     for mutant in tool.read_list():
