@@ -89,6 +89,7 @@ TEST(PhotonMap, FixedOrderMeansTheSameSums) {
 
 // Cells that did not get an entry are found in the stash. With a table this tight about 115 of 10^6 cells are stashed, and
 // four of these would have found an empty entry next. If lookups ended at empty entries, these would be lost.
+// On the CPU alone, since other backends need half a minute for so many photons, and have the same kernels.
 TEST(PhotonMap, CuckooFindsWhatItStashed) {
     constexpr uint32_t kSide = 100;
     std::mt19937 random(1);

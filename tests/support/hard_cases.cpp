@@ -308,7 +308,7 @@ std::vector<HardCase> make_cases() {
         cases.push_back(one_cell);
         cases.back().name += ", " + map;
         cases.back().photon_map = map;
-        if (map != "stochastic_hash") cases.back().samples = 16;  // which has more noise
+        if (map != "stochastic_hash") cases.back().samples = 16;  // stochastic hashing needs all for its power
     }
     by_photons("no photon at all", fmt::format(fmt::runtime(disk), 1e-4, -90), 0, 0,
                "radius=0.05,photonsperiteration=1000", 16);
