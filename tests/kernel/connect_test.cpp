@@ -1,6 +1,7 @@
 // Connections to the camera undo camera_ray, for every kind of camera; splats follow the pixel filter, and their sums lose
 // nothing.
 #include "core/scene/filter_table.h"
+#include "integrators/bidirectional/bidirectional_host.h"
 #include "support/device_run.h"
 #include "support/statistics.h"
 #include "support/test_scene.h"
@@ -40,7 +41,7 @@ class Probe {
         return run(*connect_, scene, {kind, seed, 0, 0}, inputs, uint32_t(inputs.size() / 2), results, true);
     }
     void clear_splats(size_t pixels) {
-        splats_ = device_->create_buffer(pixels * 7 * 4, "splats");
+        splats_ = device_->create_buffer(pixels * kernel::SPLAT_WORDS * 4, "splats");
         splats_->fill_zero();
     }
 
@@ -271,6 +272,45 @@ TEST(Connect, SumsOfSplatsLoseNothing) {
     }
 }
 
+// Numbers of 128 bits: each pair cancels but for the last number, whatever is carried or borrowed on the way.
+TEST(Connect, SumsOfSplatsCarryThroughAllWords) {
+    for (const std::string& backend : kernel_backends()) {
+        SCOPED_TRACE(backend);
+        Probe probe(backend);
+        TestScene scene;
+        set_camera(scene.scene, cameras()[0]);
+        const Scene& finished = scene.finish();
+        std::vector<vec4> inputs;
+        std::vector<glm::dvec3> expected;
+        // The sums are given: doubles have too few digits for them.
+        const auto pixel = [&](const std::vector<vec3>& values, const glm::dvec3& sum) {
+            for (const vec3 value : values) {
+                inputs.emplace_back(value, float(expected.size()));
+                inputs.emplace_back(1, 0, 0, 0);  // a quantum
+            }
+            expected.push_back(sum);
+        };
+        for (const int power : {2, 23, 31, 32, 40, 63, 64, 70, 94}) {
+            const float large = std::ldexp(1.0f, power);
+            pixel({vec3(large, -large, 3), vec3(-large, large, -5), vec3(large, -large, large)},
+                  {large, -large, double(large) - 2});
+            pixel({vec3(-1, 1, -large), vec3(large, -large, 0.75f * large), vec3(-large, large, -1)},
+                  {-1, 1, -0.25 * double(large) - 1});
+        }
+        pixel(std::vector<vec3>(1000, vec3(0x1p95f, -0x1p95f, 0x1.8p63f)),
+              {1000 * 0x1p95, -1000 * 0x1p95, 1500 * 0x1p63});
+        probe.clear_splats(expected.size());
+        probe.ask(finished, kSplat, inputs, 0, 17);
+        const auto found = probe.ask(finished, kSum, std::vector<vec4>(2 * expected.size(), vec4(1, 0, 0, 0)),
+                                     uint32_t(expected.size()));
+        for (size_t i = 0; i < expected.size(); ++i) {
+            EXPECT_EQ(found[i].w, 0.0f);
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(found[i][c], expected[i][c], std::abs(expected[i][c]) * 0x1p-22) << i << " " << c;
+        }
+    }
+}
+
 TEST(Connect, SplatsBeyondTheSumsAreCounted) {
     for (const std::string& backend : kernel_backends()) {
         SCOPED_TRACE(backend);
@@ -281,7 +321,7 @@ TEST(Connect, SplatsBeyondTheSumsAreCounted) {
         probe.clear_splats(1);
         const float inf = std::numeric_limits<float>::infinity();
         std::vector<vec4> inputs;
-        for (const vec3 value : {vec3(inf, 0, 0), vec3(0, std::nanf(""), 0), vec3(1e20f, 0, 0), vec3(1, 2, 3)}) {
+        for (const vec3 value : {vec3(inf, 0, 0), vec3(0, std::nanf(""), 0), vec3(1e30f, 0, 0), vec3(1, 2, 3)}) {
             inputs.emplace_back(value, 0);
             inputs.emplace_back(1e-6f, 0, 0, 0);
         }

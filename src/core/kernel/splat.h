@@ -1,34 +1,41 @@
 // Splats: samples that light paths add to any pixel. Sums are integers, so that they do not depend on the order of the
 // additions: an image is the same for any number of threads, and on every backend.
 //
-// The kernel declares `splats`, to write: SPLAT_WORDS for each pixel of the film's window. A colour is a number of 64 bits (two's
-// complement, the lower word first) in units of `quantum`; words of 32 bits with a carry, because not every device adds 64.
+// The kernel declares `splats`, to write: SPLAT_WORDS for each pixel of the film's window. Each of a colour's numbers has 128 bits
+// (two's complement, the lowest word first) in units of `quantum`: a lamp close to what the camera sees, in a scene of
+// kilometres, makes splats of 2^70 quanta. Words of 32 bits with a carry, because not every device adds more.
 #ifndef LAMPYRIS_KERNEL_SPLAT
 #define LAMPYRIS_KERNEL_SPLAT
 
 #include "core/kernel/splat_layout.h"
 
-FN void splat_add_word(uint at, uint low, uint high) {
-    uint before = ATOMIC_ADD_U32(splats[at], low);
-    uint carried = high + (before + low < before ? 1u : 0u);
-    if (carried != 0u) ATOMIC_ADD_U32(splats[at + 1u], carried);
+// Adds `amount`, in units of the word `word` of the number at `at`, or subtracts it.
+FN void splat_add_word(uint at, uint word, uint amount, bool negative) {
+    while (amount != 0u && word < SPLAT_NUMBER_WORDS) {
+        uint added = negative ? 0u - amount : amount;
+        uint before = ATOMIC_ADD_U32(splats[at + word], added);
+        // What is carried, or borrowed.
+        amount = (negative ? before < amount : before + added < before) ? 1u : 0u;
+        word += 1u;
+    }
 }
 
 // Adds one number. Rounds up or down by chance, by the uniform number u: many small splats keep their sum in expectation, where
 // rounding to the nearest quantum would make it 0.
 FN void splat_add_number(uint at, float quanta, float u) {
     float size = abs(quanta);
-    float high = floor(size * 2.3283064365386963e-10f);  // 2^-32
-    float rest = size - high * 4294967296.0f;            // exact: what `high` leaves of the mantissa
+    // A mantissa has 24 bits: those of a number above 2^64 are above the lowest word.
+    uint word = 0u;
+    if (size >= 1.8446744073709552e19f) {
+        size = size * 2.3283064365386963e-10f;  // 2^-32
+        word = 1u;
+    }
+    float high = floor(size * 2.3283064365386963e-10f);
+    float rest = size - high * 4294967296.0f;  // exact: what `high` leaves of the mantissa
     float whole = floor(rest);
     // A number with a fraction is below 2^24, so that the sum stays within a word.
-    uint low_word = uint(whole) + (u < rest - whole ? 1u : 0u);
-    uint high_word = uint(high);
-    if (quanta < 0.0f) {
-        high_word = ~high_word + (low_word == 0u ? 1u : 0u);
-        low_word = ~low_word + 1u;
-    }
-    if ((low_word | high_word) != 0u) splat_add_word(at, low_word, high_word);
+    splat_add_word(at, word, uint(whole) + (u < rest - whole ? 1u : 0u), quanta < 0.0f);
+    splat_add_word(at, word + 1u, uint(high), quanta < 0.0f);
 }
 
 // Adds a colour (linear Rec. 709) to a pixel. `key` decides how it is rounded: a hash of whatever makes the splat unique.
@@ -40,8 +47,8 @@ FN void splat_add(uint pixel, vec3 rgb, float quantum, uint key) {
         return;
     }
     splat_add_number(at, quanta.x, unit_float(hash_combine(key, 0u)));
-    splat_add_number(at + 2u, quanta.y, unit_float(hash_combine(key, 1u)));
-    splat_add_number(at + 4u, quanta.z, unit_float(hash_combine(key, 2u)));
+    splat_add_number(at + SPLAT_NUMBER_WORDS, quanta.y, unit_float(hash_combine(key, 1u)));
+    splat_add_number(at + 2u * SPLAT_NUMBER_WORDS, quanta.z, unit_float(hash_combine(key, 2u)));
 }
 
 #endif

@@ -4,11 +4,21 @@
 
 #include "core/kernel/splat_layout.h"
 
-FN float splat_number(uint low, uint high) {
-    bool negative = (high & 0x80000000u) != 0u;
-    uint low_size = negative ? ~low + 1u : low;
-    uint high_size = negative ? ~high + (low == 0u ? 1u : 0u) : high;
-    float size = float(high_size) * 4294967296.0f + float(low_size);
+FN float splat_number(uint at) {
+    bool negative = (splats[at + SPLAT_NUMBER_WORDS - 1u] & 0x80000000u) != 0u;
+    float size = 0.0f;
+    float unit_of_word = 1.0f;
+    // The size of a negative number is its complement plus 1.
+    uint carry = 1u;
+    for (uint i = 0u; i < SPLAT_NUMBER_WORDS; ++i) {
+        uint word = splats[at + i];
+        if (negative) {
+            word = ~word + carry;
+            carry = word == 0u ? carry : 0u;
+        }
+        size = float(word) * unit_of_word + size;
+        unit_of_word *= 4294967296.0f;
+    }
     return negative ? -size : size;
 }
 
@@ -16,8 +26,7 @@ FN float splat_number(uint low, uint high) {
 FN vec3 splat_sum(uint pixel, float quantum, OUT(uint) lost) {
     uint at = pixel * SPLAT_WORDS;
     lost = splats[at + SPLAT_LOST];
-    return vec3(splat_number(splats[at], splats[at + 1u]), splat_number(splats[at + 2u], splats[at + 3u]),
-                splat_number(splats[at + 4u], splats[at + 5u])) *
+    return vec3(splat_number(at), splat_number(at + SPLAT_NUMBER_WORDS), splat_number(at + 2u * SPLAT_NUMBER_WORDS)) *
            quantum;
 }
 
