@@ -259,6 +259,24 @@ std::vector<HardCase> make_cases() {
     }
     // Four texels around the zenith; a texel has 4 pi / 32^2 of solid angle.
     under("a map of the sky with texels of 1e9", bright_zenith(1e9, 32), bright_zenith_irradiance(1e9, 32), 1e-4);
+    // Cosines of narrow beams are 1 as floats; and splats are large where a beam meets little of a large scene. The picture shows
+    // what is within the beam, or all of it.
+    for (const auto& [degrees, reach] : {std::pair{0.01, 0}, {0.001, 0}, {0.01, 100000}})
+        for (const bool whole : {false, true}) {
+            const double radius = std::tan(degrees * kPi / 180), half = (whole ? 2 : 0.6) * radius;
+            std::string text = fmt::format(
+                "LightSource \"spot\" \"rgb I\" [ 1 1 1 ] \"point3 from\" [ 0 1 0 ] \"point3 to\" [ 0 0 0 ] \"float "
+                "coneangle\" {} "
+                "\"float conedeltaangle\" 0\n",
+                degrees);
+            for (const int x : {-reach, reach})
+                if (x != 0) text += fmt::format("AttributeBegin Translate {} 0 0 Shape \"sphere\" AttributeEnd\n", x);
+            under(fmt::format("{} a beam of {} degrees{}", whole ? "all of" : "within", degrees,
+                              reach > 0 ? " in a scene of 100 km" : ""),
+                  text, whole ? kPi * radius * radius / (4 * half * half) : 1.0, 1e-2, half, 256, 1);
+            // vcm's radius: as above.
+            cases.back().integrators = {"path", "light", "bdpt", "mlt", "sppm"};
+        }
     std::string many;
     for (int i = 0; i < 100000; ++i) many += point(1e-5, 1);
     under("100,000 lamps", many, mean, 1e-4);

@@ -3,6 +3,7 @@
 #include "support/build_text.h"
 #include "support/temporary_folder.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -204,6 +205,17 @@ void write_grey(const std::string& file, int side, const auto& value) {
         for (int x = 0; x < side; ++x)
             for (int c = 0; c < 3; ++c) image.at(x, y, c) = value(x, y);
     write_image(file, image);
+}
+
+// 2 pi (1 - cos), where the cosine of a float has no digits.
+TEST(BuildScene, PowerOfANarrowSpotIsThatOfItsCone) {
+    for (const double degrees : {0.1, 0.01, 1e-3}) {
+        const BuiltText text = build_world(fmt::format(
+            "LightSource \"spot\" \"float coneangle\" {} \"float conedeltaangle\" 0 \"float power\" 1\n", degrees));
+        ASSERT_EQ(text.all_errors(), "");
+        const double sphere = 4 * std::numbers::pi * std::pow(std::sin(degrees * std::numbers::pi / 360), 2);
+        EXPECT_NEAR(text.scene().lights[0].emission[0] * sphere, 1.0, 1e-5) << degrees;
+    }
 }
 
 // A white picture, 90 degrees wide and high, fills the solid angle 4 asin(sin^2 45) = 2 pi / 3. The sum over its pixels

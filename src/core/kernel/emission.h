@@ -77,7 +77,7 @@ FN float projection_pdf(IN(LightRecord) light, float d2, vec3 direction) {
 
 // Density (1/sr) with which photons of a light at a point leave in a direction into which it shines.
 FN float point_emission_pdf(IN(LightRecord) light, vec3 direction) {
-    if (light.kind == LIGHT_SPOT) return pdf_uniform_cone(1.0f - spot_cos_end(light));
+    if (light.kind == LIGHT_SPOT) return pdf_uniform_cone(spot_end(light));
     if (!HAS(EFFECT_PROJECTION_LIGHTS) || light.kind != LIGHT_PROJECTION) return pdf_uniform_sphere();
     TransformRecord m = transforms[light.transform];
     vec3 local = transform_vector(m.from0, m.from1, m.from2, direction);
@@ -87,10 +87,12 @@ FN float point_emission_pdf(IN(LightRecord) light, vec3 direction) {
 FN bool emit_from_point(uint index, vec2 u_place, vec2 u_direction, INOUT(Emission) e) {
     LightRecord light = lights[index];
     e.direction_pdf = pdf_uniform_sphere();
+    Spectrum intensity = light.emission;
     if (light.kind == LIGHT_SPOT) {
-        float one_minus_cos = 1.0f - spot_cos_end(light);
-        e.direction = to_world(frame_from_z(spot_axis(light)), sample_uniform_cone(u_direction, one_minus_cos));
-        e.direction_pdf = pdf_uniform_cone(one_minus_cos);
+        e.direction = to_world(frame_from_z(spot_axis(light)), sample_uniform_cone(u_direction, spot_end(light)));
+        e.direction_pdf = pdf_uniform_cone(spot_end(light));
+        // Of the direction before it is rounded, which moves it out of a narrow beam.
+        intensity = intensity * spot_falloff(light, u_direction.x * spot_end(light));
     } else if (HAS(EFFECT_PROJECTION_LIGHTS) && light.kind == LIGHT_PROJECTION) {
         TransformRecord m = transforms[light.transform];
         vec4 window = projection_window(light);
@@ -104,7 +106,8 @@ FN bool emit_from_point(uint index, vec2 u_place, vec2 u_direction, INOUT(Emissi
     e.position = light_position(light);
     e.origin = e.position + point_offset(e.position, e.direction) * e.direction;
     e.place_pdf = light.choice_probability;
-    e.power = point_light_intensity(light, e.direction) / (e.direction_pdf * light.choice_probability);
+    if (light.kind != LIGHT_SPOT) intensity = point_light_intensity(light, e.direction);
+    e.power = intensity / (e.direction_pdf * light.choice_probability);
     e.medium = light_medium(index, e.direction, e.direction);
     return true;
 }

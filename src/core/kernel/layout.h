@@ -253,8 +253,8 @@ CONST uint CDF_TOTAL = 0x80000000u;  // the last value of every CDF in `distribu
 //   v2: p2, 1 / area. normal: unit normal, negated if the geometry's flags say so; 1 if vertex normals determine its side
 //   at each point instead, else 0.
 // - point, goniometric. v0: position.
-// - spot. v0: position. v1: unit axis (away from the light), cosine at which the falloff begins. v2.w: cosine at which it
-//   ends.
+// - spot. v0: position. v1: unit axis (away from the light), 1 - cos of the angle at which the falloff begins. v2.w: of that at
+//   which it ends.
 // - distant. v0: unit direction towards the light.
 // - projection. v0: position. v2: xmin, ymin, xmax, ymax of the picture at z = 1 in light space.
 struct LightRecord {

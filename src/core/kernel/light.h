@@ -146,10 +146,12 @@ FN bool sample_area_light(uint index, vec3 ref_p, vec2 u, INOUT(LightSample) s) 
 
 // ---- Lights at a point -----------------------------------------------------------------------------------------------
 
-// Smooth step from 0 at `low` to 1 at `high`.
-FN float smooth_step_of(float x, float low, float high) {
-    if (low == high) return x < low ? 0.0f : 1.0f;
-    float t = clamp((x - low) / (high - low), 0.0f, 1.0f);
+// The share of a spot light's intensity at an angle to its axis, by 1 - cos: a smooth step in the cosine.
+FN float spot_falloff(IN(LightRecord) light, float one_minus_cos) {
+    float begin = spot_begin(light);
+    float end = spot_end(light);
+    if (begin == end) return one_minus_cos > end ? 0.0f : 1.0f;
+    float t = clamp((end - one_minus_cos) / (end - begin), 0.0f, 1.0f);
     return t * t * (3.0f - 2.0f * t);
 }
 
@@ -157,8 +159,7 @@ FN float smooth_step_of(float x, float low, float high) {
 // the same names (4th edition, sections 12.2.1 and 12.2.3).
 FN Spectrum point_light_intensity(IN(LightRecord) light, vec3 w) {
     Spectrum intensity = light.emission;
-    if (light.kind == LIGHT_SPOT)
-        return intensity * smooth_step_of(dot3(spot_axis(light), w), spot_cos_end(light), spot_cos_begin(light));
+    if (light.kind == LIGHT_SPOT) return intensity * spot_falloff(light, 0.5f * length_squared(w - spot_axis(light)));
     if (HAS(EFFECT_PROJECTION_LIGHTS) && light.kind >= LIGHT_PROJECTION) {
         TransformRecord m = transforms[light.transform];
         vec3 d = unit(transform_vector(m.from0, m.from1, m.from2, w));

@@ -11,8 +11,9 @@ double luminance_of(glm::dvec3 rgb);  // Rec.709
 double luminance_of(Spectrum s);
 kernel::LightRecord blank_light(uint32_t kind);
 // What core/kernel/light_record.h reads. `p0` is the position, or a distant light's direction.
-inline void set_spot(kernel::LightRecord& record, const glm::vec3& axis, float cos_begin, float cos_end) {
-    record.p1 = axis, record.extent = cos_begin, record.inverse_area = cos_end;
+// `begin` and `end`: 1 - cos of the angles at which the falloff begins and ends.
+inline void set_spot(kernel::LightRecord& record, const glm::vec3& axis, float begin, float end) {
+    record.p1 = axis, record.extent = begin, record.inverse_area = end;
 }
 inline void set_projection_window(kernel::LightRecord& record, const glm::vec4& window) {
     record.p2 = glm::vec3(window), record.inverse_area = window.w;

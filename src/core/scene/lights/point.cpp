@@ -10,11 +10,14 @@ namespace lampyris {
 
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
+constexpr double kPi = std::numbers::pi;
+
+// 1 - cos of an angle in degrees.
+double one_minus_cos(double degrees) { return 2.0 * std::pow(std::sin(degrees * kPi / 360.0), 2); }
 
 // `sphere` is the power that a unit intensity emits in total, in sr.
-void add_light(LightContext& context, kernel::LightRecord record, Spectrum intensity, float sphere) {
-    if (const float power = context.reader.get_float("power"); power > 0.0f) intensity *= power / sphere;
+void add_light(LightContext& context, kernel::LightRecord record, Spectrum intensity, double sphere) {
+    if (const float power = context.reader.get_float("power"); power > 0.0f) intensity *= float(power / sphere);
     record.emission = intensity;
     context.ask(kernel::EFFECT_POINT_LIGHTS);
     context.build.lights.push_back({record, luminance_of(intensity) * sphere, false, context.light.location});
@@ -25,7 +28,7 @@ void build_point(LightContext& context) {
     const std::vector<float> from = context.reader.get_tuple("from", 3);
     const glm::vec3 p = from.size() == 3 ? glm::vec3(from[0], from[1], from[2]) : glm::vec3(0.0f);
     record.p0 = transformed_point(context.light.world_from_light.matrix[0], p);
-    add_light(context, record, read_emission(context, "I"), 4.0f * kPi);
+    add_light(context, record, read_emission(context, "I"), 4.0 * kPi);
 }
 
 void build_spot(LightContext& context) {
@@ -34,15 +37,15 @@ void build_spot(LightContext& context) {
     if (delta > cone)
         context.reader.error("conedeltaangle", "\"conedeltaangle\" is larger than \"coneangle\"",
                              "the falloff is a part of the cone");
-    const float begin = std::cos(std::fmax(cone - delta, 0.0f) * kPi / 180.0f), end = std::cos(cone * kPi / 180.0f);
+    const double begin = one_minus_cos(std::fmax(double(cone) - double(delta), 0.0)), end = one_minus_cos(cone);
     glm::vec3 from;
     const glm::vec3 direction = read_direction(context, from);
     const glm::mat4& m = context.light.world_from_light.matrix[0];
     const glm::vec3 axis = glm::mat3(m) * direction;
     record.p0 = transformed_point(m, from);
-    set_spot(record, glm::normalize(axis), begin, end);
+    set_spot(record, glm::normalize(axis), float(begin), float(end));
     // pbrt-v4, lights.cpp, SpotLight::Create: the falloff counts as half.
-    add_light(context, record, read_emission(context, "I"), 2.0f * kPi * ((1.0f - begin) + (begin - end) / 2.0f));
+    add_light(context, record, read_emission(context, "I"), 2.0 * kPi * (begin + (end - begin) / 2.0));
 }
 
 ParameterSpecs point_specs() {
