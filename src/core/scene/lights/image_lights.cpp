@@ -45,16 +45,18 @@ void build_projection(LightContext& context) {
     // The field of view is that of the shorter side, as for cameras.
     const double x = half * std::fmax(aspect, 1.0), y = half * std::fmax(1.0 / aspect, 1.0);
     set_projection_window(record, {float(-x), float(-y), float(x), float(y)});
-    // Luminous power: the integral of intensity over solid angle; the area element of the picture at z = 1 subtends cos^3 of
-    // its area.
+    // Luminous power: the sum of intensity over the solid angles of pixels, each the difference of those of four rectangles that
+    // have a corner on the axis.
     const std::vector<glm::vec3> pixels = context.build.textures.pixels(record.image);
+    const auto corner = [&](uint32_t i, uint32_t j) {
+        const double px = x * (2.0 * i / width - 1.0), py = y * (2.0 * j / height - 1.0);
+        return std::atan(px * py / std::sqrt(1.0 + px * px + py * py));
+    };
     double emitted = 0.0;
     for (uint32_t j = 0; j < height; ++j)
-        for (uint32_t i = 0; i < width; ++i) {
-            const double px = x * (2.0 * (i + 0.5) / width - 1.0), py = y * (2.0 * (j + 0.5) / height - 1.0);
-            emitted += luminance_of(pixels[size_t(j) * width + i]) / std::pow(1.0 + px * px + py * py, 1.5);
-        }
-    emitted *= 4.0 * x * y / (double(width) * height);
+        for (uint32_t i = 0; i < width; ++i)
+            emitted += luminance_of(pixels[size_t(j) * width + i]) *
+                       (corner(i + 1, j + 1) - corner(i, j + 1) - corner(i + 1, j) + corner(i, j));
     add_light(context, record, Spectrum(scale), emitted);
 }
 

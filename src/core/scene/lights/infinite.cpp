@@ -25,6 +25,19 @@ float octahedral_z(float s, float t) {
     return std::copysign(1.0f - r * r, distance);
 }
 
+// The integral of the cosine over the part of a texel, of n x n, in the upper half of the sphere; the whole sphere is 4 pi. The
+// horizon goes through texels, so that small maps need many points in each.
+double falling_share(uint32_t x, uint32_t y, uint32_t n) {
+    constexpr uint32_t kPoints = 1024;  // along a side of the map: the error of a constant sky is 2e-6
+    const uint32_t points = (kPoints + n - 1) / n;
+    double sum = 0.0;
+    for (uint32_t j = 0; j < points; ++j)
+        for (uint32_t i = 0; i < points; ++i)
+            sum += std::max(0.0f, octahedral_z((float(x) + (float(i) + 0.5f) / float(points)) / float(n),
+                                               (float(y) + (float(j) + 0.5f) / float(points)) / float(n)));
+    return sum * 4.0 * std::numbers::pi / (double(points) * points * n * n);
+}
+
 void build_constant(LightContext& context, float scale) {
     kernel::LightRecord record = blank_light(kernel::LIGHT_INFINITE);
     Spectrum radiance = scale * read_spectrum(context.build, context.reader, "L", SpectrumUse::kLight, Spectrum(1.0f));
@@ -51,6 +64,7 @@ void build_image(LightContext& context, const std::string& filename, float scale
         return;
     }
     std::vector<float> weights;
+    const float illuminance = context.reader.get_float("illuminance");
     double average = 0.0, falling = 0.0;  // luminance over the sphere; over its upper half, by the cosine
     const std::vector<glm::vec3> pixels = build.textures.pixels(record.image);
     weights.reserve(pixels.size());
@@ -62,15 +76,11 @@ void build_image(LightContext& context, const std::string& filename, float scale
             weights.push_back(
                 luminance > 0.0 ? float(std::clamp(luminance, double(Limits::min()), double(Limits::max()))) : 0.0f);
             average += luminance;
-            const float z = octahedral_z((float(x) + 0.5f) / float(width), (float(y) + 0.5f) / float(height));
-            if (z > 0.0f) falling += luminance * double(z);
+            if (illuminance > 0.0f && luminance > 0.0) falling += luminance * falling_share(x, y, width);
         }
     average /= double(pixels.size());
-    // pbrt-v4, lights.cpp, Light::Create.
-    if (const float illuminance = context.reader.get_float("illuminance"); illuminance > 0.0f) {
-        const double given = falling * 4.0 * std::numbers::pi / double(pixels.size());
-        scale = given > 0.0 ? float(double(scale) * illuminance / given) : 0.0f;
-    }
+    // As pbrt-v4 (lights.cpp, Light::Create), which looks at the middle of each texel alone.
+    if (illuminance > 0.0f) scale = falling > 0.0 ? float(double(scale) * illuminance / falling) : 0.0f;
     record.transform = build.add_transform(context.light.world_from_light.matrix[0], context.light.location);
     record.distribution = append_sky_distributions(weights, width, height, build.scene.distributions);
     record.emission = Spectrum(scale);
