@@ -374,5 +374,21 @@ TEST(Touching, TakesNoTimeForManyShapes) {
     EXPECT_LT(double(std::clock() - before) / CLOCKS_PER_SEC, kSeconds);
 }
 
+// A ball of glass of 5 cm beside a sphere whose surface is rounded by as much.
+TEST(Touching, SmallGlassBesideALargeSphereIsTold) {
+    const auto told = [](double radius, double gap, double ball) {
+        return warnings_of(
+            fmt::format("AttributeBegin Translate 0 0 {} Shape \"sphere\" \"float radius\" {} AttributeEnd\n"
+                        "Material \"dielectric\" Translate 0 0 {} Shape \"sphere\" \"float radius\" {}\n",
+                        -radius, radius, gap + ball, ball));
+    };
+    EXPECT_EQ(told(1e5, 0.05, 0.05), 1u);
+    EXPECT_EQ(told(5e4, 0.05, 0.05), 1u);
+    EXPECT_EQ(told(1e4, 0.05, 0.05), 0u);
+    EXPECT_EQ(told(1e5, 1, 0.05), 0u);
+    EXPECT_EQ(told(1e5, 0.05, 100), 0u) << "of glass in proportion, next to nothing is missing";
+    EXPECT_EQ(told(1, 0, 0.5), 0u);
+}
+
 }  // namespace
 }  // namespace lampyris

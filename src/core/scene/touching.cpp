@@ -10,12 +10,14 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 namespace lampyris {
 namespace {
@@ -124,6 +126,7 @@ class Search {
     void within(uint32_t set_index) {
         const GeometrySet& set = scene_.sets[set_index];
         equal_quadrics(set);
+        small_beside_spheres(set);
         if (set.geometry_count == 1 && is_one_body(set.first_geometry)) return;
         bool any = false;
         for (uint32_t g = set.first_geometry; g < set.first_geometry + set.geometry_count; ++g)
@@ -276,6 +279,40 @@ class Search {
         }
     }
 
+    // A ray that leaves a sphere starts outside of the rounding of its radius, and so inside of glass that is nearer. That of glass
+    // in proportion to the sphere is next to nothing.
+    void small_beside_spheres(const GeometrySet& set) {
+        constexpr double kRounding = 2.5e-6, kSmall = 2e-4;  // of the radius
+        const uint32_t end = set.first_geometry + set.geometry_count;
+        std::vector<uint32_t> passing;
+        double smallest = std::numeric_limits<double>::infinity();
+        for (uint32_t g = set.first_geometry; g < end; ++g)
+            if (passes_(scene_.geometries[g])) passing.push_back(g), smallest = std::min(smallest, size_of(g));
+        for (uint32_t s = set.first_geometry; s < end; ++s) {
+            const kernel::GeometryRecord& sphere = scene_.geometries[s];
+            if (sphere.kind != kernel::GEOMETRY_SPHERE) continue;
+            const kernel::TransformRecord& t = scene_.transforms[sphere.transform];
+            const dvec3 middle(t.to0.w, t.to1.w, t.to2.w);
+            const double radius = sphere.quadric.radius * glm::length(dvec3(t.to0.x, t.to1.x, t.to2.x));
+            if (smallest > kSmall * radius) continue;
+            for (const uint32_t g : passing) {
+                if (++pairs_ > kMostPairs) return void(incomplete_ = true);
+                if (g == s || size_of(g) > kSmall * radius) continue;
+                const auto& [low, high] = boxes_.at(g);
+                const double nearest = glm::length(middle - glm::clamp(middle, low, high)),
+                             farthest = glm::length(glm::max(glm::abs(middle - low), glm::abs(middle - high)));
+                if (std::max(nearest - radius, radius - farthest) > kRounding * radius) continue;
+                if (!told_.insert(std::minmax(s, g)).second || told_.size() > kMostMessages) continue;
+                context_.diagnostics.warning(
+                    places_[g],
+                    fmt::format("this shape is so small, and so close to the sphere at {}, that light which leaves the "
+                                "sphere may start inside of it",
+                                where(s)),
+                    fmt::format("a gap of {:.1g} is enough, or a smaller sphere", kRounding * radius));
+            }
+        }
+    }
+
     // `a` and `b` overlap in one plane.
     void touch(const PlaneTriangle& a, const PlaneTriangle& b, bool one_mesh) {
         const bool a_can = passes_.is_boundary(scene_.geometries[a.geometry]),
@@ -314,15 +351,24 @@ class Search {
                          : "a gap of 3e-6 of the coordinates is enough, or let the shapes overlap");
     }
 
-    // The diagonal of a mesh's box.
+    // The diagonal of a shape's box.
     double size_of(uint32_t geometry) {
-        const auto [known, is_new] = sizes_.try_emplace(geometry, 0.0);
-        if (!is_new) return known->second;
-        dvec3 low(1e300), high(-1e300);
-        for (uint32_t i = 0; i < plane_triangle_count(scene_.geometries[geometry]); ++i)
-            for (const dvec3& p : plane_triangle(scene_, geometry, i).corners)
-                low = glm::min(low, p), high = glm::max(high, p);
-        return known->second = glm::length(high - low);
+        const auto [known, is_new] = boxes_.try_emplace(geometry, dvec3(1e300), dvec3(-1e300));
+        auto& [low, high] = known->second;
+        const auto add = [&](const dvec3& p) { low = glm::min(low, p), high = glm::max(high, p); };
+        const kernel::GeometryRecord& g = scene_.geometries[geometry];
+        for (uint32_t i = 0; is_new && i < plane_triangle_count(g); ++i)
+            for (const dvec3& p : plane_triangle(scene_, geometry, i).corners) add(p);
+        if (is_new && (g.kind == kernel::GEOMETRY_SPHERE || g.kind == kernel::GEOMETRY_CYLINDER)) {
+            const kernel::TransformRecord& t = scene_.transforms[g.transform];
+            const double r = g.quadric.radius;
+            for (int corner = 0; corner < 8; ++corner) {
+                const glm::dvec4 p(corner & 1 ? r : -r, corner & 2 ? r : -r,
+                                   corner & 4 ? g.quadric.z_max : g.quadric.z_min, 1.0);
+                add({glm::dot(glm::dvec4(t.to0), p), glm::dot(glm::dvec4(t.to1), p), glm::dot(glm::dvec4(t.to2), p)});
+            }
+        }
+        return glm::length(high - low);
     }
 
     std::string where(uint32_t geometry) const { return context_.description.sources->describe(places_[geometry]); }
@@ -337,7 +383,7 @@ class Search {
     std::set<std::pair<uint32_t, uint32_t>> told_;
     std::map<std::pair<uint32_t, uint32_t>, double> moved_;  // geometry and the one that it touches; the gap
     std::map<uint32_t, Inset> insets_;
-    std::map<uint32_t, double> sizes_;
+    std::map<uint32_t, std::pair<dvec3, dvec3>> boxes_;
     std::map<uint32_t, bool> one_body_;
 };
 
