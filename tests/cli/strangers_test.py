@@ -108,7 +108,7 @@ def test_a_scene_does_not_choose_what_is_overwritten(program, folders, name):
 
 
 @pytest.mark.parametrize("where", ["name", "type", "texture", "file", "accelerator", "light"])
-@pytest.mark.parametrize("evil", ["\x1b]0;title\x07\x1b[31m", "\u009b31m", "a\u202eb"])
+@pytest.mark.parametrize("evil", ["\x1b]0;title\x07\x1b[31m", "\u009b31m", "a\u202eb", "a\0b", "a\U000e0041b"])
 def test_control_characters_are_shown_as_escapes(program, scene, where, evil):
     text = {
         "accelerator": f'WorldBegin Accelerator "{evil}" Shape "none"',
@@ -118,10 +118,26 @@ def test_control_characters_are_shown_as_escapes(program, scene, where, evil):
         "texture": f'Material "diffuse" "texture reflectance" "{evil}" Shape "sphere"',
         "file": f'Include "{evil}"',
     }[where]
-    scene.write_text(SCENE + text + "\n")
+    scene.write_text(SCENE + text + '\nShape "last"\n')
     done = render(program, scene, cwd=scene.parent)
     assert done.returncode == 1
-    assert not set("\x1b\x07\u009b\u202e") & set(done.stderr)
+    assert not set("\x1b\x07\u009b\u202e\0\U000e0041") & set(done.stderr)
+    # Nothing cuts what is said.
+    assert 'unknown shape "last"' in done.stderr or where == "accelerator"
+
+
+def test_a_long_name_is_cut(program, scene):
+    scene.write_text(SCENE + 'Shape "' + "long" * 1000000 + '"\n')
+    done = render(program, scene, cwd=scene.parent)
+    assert done.returncode == 1 and "unknown shape" in done.stderr
+    assert len(done.stderr) < 10000
+
+
+def test_a_transform_that_overflows_is_no_motion(program, scene):
+    scene.write_text(SCENE + "Scale 10 10 10\n" * 400 + 'Shape "sphere"\n')
+    done = render(program, scene, cwd=scene.parent)
+    assert done.returncode == 1 and "cannot be inverted" in done.stderr
+    assert "motion blur" not in done.stderr
 
 
 def test_nor_do_options_and_file_names_reach_the_terminal(program, tmp_path):

@@ -17,7 +17,34 @@ char printable(char c) {
     return byte < 0x20 || byte == 0x7f ? '?' : c;
 }
 
+// A byte as an escape: \x00.
+std::string escape_of(char c) {
+    constexpr const char* kDigits = "0123456789abcdef";
+    const auto value = static_cast<unsigned char>(c);
+    return {'\\', 'x', kDigits[value >> 4], kDigits[value & 15]};
+}
+
+// what() ends at a zero byte.
+std::string without_zeros(const std::string& message) {
+    std::string text;
+    for (const char c : message)
+        if (c == '\0')
+            text += escape_of(c);
+        else
+            text += c;
+    return text;
+}
+
+// Names in a scene may be as long as their file.
+std::string at_most(std::string text, size_t bytes) {
+    if (text.size() <= bytes) return text;
+    while (bytes > 0 && is_continuation(text[bytes])) --bytes;
+    return text.substr(0, bytes) + "...";
+}
+
 }  // namespace
+
+Error::Error(ExitCode code, const std::string& message) : std::runtime_error(without_zeros(message)), code_(code) {}
 
 uint32_t Sources::add(std::string name, std::string_view text, std::shared_ptr<const void> owner) {
     sources_.push_back({std::move(name), {}, text, std::move(owner), {}});
@@ -151,8 +178,10 @@ std::string Diagnostics::format(const char* severity, const Record& record) cons
     std::string text = sources_->describe(record.location);
     if (!text.empty()) text += ": ";
     text += severity;
-    text += ": " + record.message;
-    if (!record.hint.empty()) text += record.hint.front() == ' ' ? record.hint : "; " + record.hint;
+    constexpr size_t kMaxMessage = 4000;
+    text += ": " + at_most(record.message, kMaxMessage);
+    if (!record.hint.empty())
+        text += at_most(record.hint.front() == ' ' ? record.hint : "; " + record.hint, kMaxMessage);
     const std::string excerpt = sources_->excerpt(record.location);
     if (!excerpt.empty()) text += "\n" + excerpt;
     return text;
@@ -236,13 +265,16 @@ bool is_harmless(uint32_t code) {
     if (code >= 0x7f && code < 0xa0) return false;
     const bool directs = code == 0x61c || code == 0x200e || code == 0x200f || (code >= 0x2028 && code <= 0x202e) ||
                          (code >= 0x2066 && code <= 0x2069);
-    return !directs && code != 0xfeff;
+    // Tags, and what else has no width.
+    const bool is_invisible = code == 0xad || code == 0x180e || (code >= 0x200b && code <= 0x200d) ||
+                              (code >= 0x2060 && code <= 0x2064) || code == 0xfeff ||
+                              (code >= 0xfff9 && code <= 0xfffb) || (code >= 0xe0000 && code <= 0xe0fff);
+    return !directs && !is_invisible;
 }
 
 }  // namespace
 
 std::string escaped(std::string_view text) {
-    constexpr const char* kDigits = "0123456789abcdef";
     std::string result;
     while (!text.empty()) {
         uint32_t code = 0;
@@ -251,10 +283,7 @@ std::string escaped(std::string_view text) {
         if (length > 0 && is_harmless(code)) {
             result += bytes;
         } else {
-            for (const char c : bytes) {
-                const auto value = static_cast<unsigned char>(c);
-                result += {'\\', 'x', kDigits[value >> 4], kDigits[value & 15]};
-            }
+            for (const char c : bytes) result += escape_of(c);
         }
         text.remove_prefix(bytes.size());
     }
@@ -266,7 +295,11 @@ std::string shown(std::string_view text) {
     std::string result;
     size_t stop = std::min(text.size(), kMaxShownText);
     while (stop < text.size() && stop > 0 && is_continuation(text[stop])) --stop;
-    for (char c : text.substr(0, stop)) result += printable(c);
+    for (const char c : text.substr(0, stop))
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+            result += escape_of(c);
+        else
+            result += c;
     return stop < text.size() ? result + "..." : result;
 }
 

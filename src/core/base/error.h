@@ -19,7 +19,7 @@ enum class ExitCode : int { kDone = 0, kBadInput = 1, kMachineCannot = 2, kInter
 
 class Error : public std::runtime_error {
  public:
-    Error(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+    Error(ExitCode code, const std::string& message);
     ExitCode code() const { return code_; }
 
  private:
@@ -87,7 +87,7 @@ class Sources {
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
 // "a, b, c" in the order given; a long list is cut, and the number of further names is given.
 std::string list_of(const std::vector<std::string>& candidates);
-// Input in a form that is safe to show in a message: cut when long, without control characters.
+// Input in a form that is safe to show in a message: cut when long, on one line, with escapes for control characters.
 std::string shown(std::string_view text);
 // The text without anything that a terminal would obey, or that would change the order of what is read: control characters other than
 // line ends and tabulators, marks of writing direction, and bytes that are not UTF-8, become escapes such as \x1b.

@@ -36,7 +36,7 @@ const PluginInfo* RegistryBase::find_info(std::string_view name) const {
 
 std::pair<std::string, std::string> RegistryBase::unknown(std::string_view name) const {
     const std::string near = did_you_mean(name, names());
-    return {fmt::format("unknown {} \"{}\"", kind_, name),
+    return {fmt::format("unknown {} \"{}\"", kind_, shown(name)),
             fmt::format("{}{}known: {}", near, near.empty() ? "" : "; ", list_of(names()))};
 }
 

@@ -11,6 +11,7 @@
 #include <glm/mat4x4.hpp>
 
 #include <array>
+#include <cstring>
 #include <map>
 #include <memory>
 #include <string>
@@ -22,7 +23,10 @@ namespace lampyris {
 // Object/light/camera space to world, at the two ends of the shutter; equal unless ActiveTransform made them differ.
 struct AnimatedTransform {
     std::array<glm::mat4, 2> matrix{glm::mat4(1.0f), glm::mat4(1.0f)};
-    bool animated() const { return matrix[0] != matrix[1]; }
+    // A matrix that overflowed holds numbers that are not equal to themselves.
+    bool animated() const {
+        return std::memcmp(&matrix[0], &matrix[1], sizeof matrix[0]) != 0 && matrix[0] != matrix[1];
+    }
 };
 
 inline constexpr uint32_t kNone = 0xffffffffu;
