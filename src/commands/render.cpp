@@ -47,9 +47,10 @@ std::vector<std::string> choose_outputs(const RenderOptions& options, const Scen
     return outputs;
 }
 
-// Throws InputError if two of the files that are written are the same: one would replace the other.
+// Throws InputError if two of the files that are written are the same, or one is the scene: one would replace the other.
 void check_distinct(const RenderOptions& options, const std::vector<std::string>& outputs) {
     std::vector<std::pair<std::string, std::string>> files;
+    if (!options.request.scene.text) files.emplace_back("the scene", options.request.scene.name);
     for (const std::string& output : outputs) files.emplace_back("-o", output);
     files.emplace_back("--stats", options.statistics_file);
     files.emplace_back("--checkpoint", options.request.checkpoint);
@@ -57,8 +58,8 @@ void check_distinct(const RenderOptions& options, const std::vector<std::string>
     for (const auto& [option, file] : files) {
         std::error_code error;
         if (file.empty() || std::filesystem::is_character_file(file, error)) continue;
-        const std::filesystem::path place = std::filesystem::weakly_canonical(std::filesystem::absolute(file), error);
-        const auto [found, is_new] = seen.try_emplace(error ? file : place.string(), option, file);
+        const std::string place = real_path(file);
+        const auto [found, is_new] = seen.try_emplace(place.empty() ? file : place, option, file);
         if (!is_new)
             throw InputError(fmt::format("error: {} '{}' and {} '{}' are the same file: one would replace the other",
                                          found->second.first, shown(found->second.second), option, shown(file)));

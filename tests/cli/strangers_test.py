@@ -140,6 +140,16 @@ def test_a_transform_that_overflows_is_no_motion(program, scene):
     assert "motion blur" not in done.stderr
 
 
+@pytest.mark.parametrize("way", ["link/there/../../scene/in.pbrt", "link/not_there/../../scene/in.pbrt"])
+def test_a_link_does_not_tell_what_is_elsewhere(program, folders, way):
+    (folders / "other/there").mkdir()
+    (folders / "scene/in.pbrt").write_text('Shape "sphere"\n')
+    (folders / "scene/link").symlink_to(folders / "other")
+    (folders / "scene/scene.pbrt").write_text(SCENE + f'Include "{way}"\n')
+    done = render(program, "scene/scene.pbrt", cwd=folders)
+    assert done.returncode == 1 and "outside of the scene's folder" in done.stderr
+
+
 def test_nor_do_options_and_file_names_reach_the_terminal(program, tmp_path):
     name = "\x1b[31mred.pbrt"
     (tmp_path / name).write_text(SCENE)

@@ -191,6 +191,30 @@ std::string why_not_readable(const std::string& path) {
     return S_ISDIR(info.st_mode) ? "it is a folder" : "it is not a regular file";
 }
 
+std::string real_path(const std::filesystem::path& path) {
+    namespace fs = std::filesystem;
+    constexpr int kMostLinks = 40;  // as many as the system follows
+    std::error_code error;
+    fs::path result = fs::absolute(path, error);
+    for (int i = 0; i < kMostLinks; ++i) {
+        result = fs::weakly_canonical(result, error);
+        if (error) return {};
+        // A link that leads to nothing is left in it, and a file that is written there would be elsewhere.
+        fs::path before, link;
+        auto part = result.begin();
+        for (; part != result.end() && link.empty(); ++part) {
+            if (fs::is_symlink(before / *part, error)) link = before / *part;
+            before /= *part;
+        }
+        if (link.empty()) return result.string();
+        fs::path target = link.parent_path() / fs::read_symlink(link, error);
+        if (error) return {};
+        for (; part != result.end(); ++part) target /= *part;
+        result = target;
+    }
+    return {};
+}
+
 std::vector<std::string> files_beside(const std::filesystem::path& path) {
     std::error_code ignored;
     std::vector<std::string> names;

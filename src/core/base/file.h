@@ -26,6 +26,10 @@ void check_writable(const std::string& path);
 // never end.
 std::string why_not_readable(const std::string& path);
 
+// The absolute path without links, also of what does not exist yet, and beyond links that lead to nothing; empty if that cannot
+// be told.
+std::string real_path(const std::filesystem::path& path);
+
 // The names of the files in the folder of `path`, sorted: for suggestions if there is no such file.
 std::vector<std::string> files_beside(const std::filesystem::path& path);
 

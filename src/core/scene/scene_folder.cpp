@@ -1,5 +1,7 @@
 #include "core/scene/scene_folder.h"
 
+#include "core/base/file.h"
+
 #include <algorithm>
 #include <filesystem>
 #include <string_view>
@@ -10,30 +12,6 @@ namespace lampyris {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Without links, as far as it exists; empty if that cannot be told.
-std::string canonical(const fs::path& path) {
-    constexpr int kMostLinks = 40;  // as many as the system follows
-    std::error_code error;
-    fs::path result = fs::absolute(path, error);
-    for (int i = 0; i < kMostLinks; ++i) {
-        result = fs::weakly_canonical(result, error);
-        if (error) return {};
-        // A link that leads to nothing is left in it, and a file that is written there would be elsewhere.
-        fs::path before, link;
-        auto part = result.begin();
-        for (; part != result.end() && link.empty(); ++part) {
-            if (fs::is_symlink(before / *part, error)) link = before / *part;
-            before /= *part;
-        }
-        if (link.empty()) return result.string();
-        fs::path target = link.parent_path() / fs::read_symlink(link, error);
-        if (error) return {};
-        for (; part != result.end(); ++part) target /= *part;
-        result = target;
-    }
-    return {};
-}
 
 bool is_below(std::string_view path, std::string_view root) {
     if (!path.starts_with(root)) return false;
@@ -49,7 +27,13 @@ bool strays(const fs::path& path, const std::vector<std::string>& roots) {
             place = place.parent_path();
         else if (name != "." && !name.empty())
             place /= name;
-        const std::string now = place.string();
+        std::string now = place.string();
+        const auto holds = [&](const std::string& root) { return is_below(now, root); };
+        std::error_code error;
+        if (std::any_of(roots.begin(), roots.end(), holds) && fs::is_symlink(place, error)) {
+            now = real_path(place);
+            place = now;
+        }
         const auto touches = [&](const std::string& root) { return is_below(now, root) || is_below(root, now); };
         if (std::none_of(roots.begin(), roots.end(), touches)) return true;
     }
@@ -60,8 +44,8 @@ bool strays(const fs::path& path, const std::vector<std::string>& roots) {
 
 SceneFolder::SceneFolder(std::string folder, std::vector<std::string> allowed)
     : name_(folder.empty() ? "." : std::move(folder)) {
-    roots_.push_back(canonical(name_));
-    for (const std::string& more : allowed) roots_.push_back(canonical(more));
+    roots_.push_back(real_path(name_));
+    for (const std::string& more : allowed) roots_.push_back(real_path(more));
     for (std::string& root : roots_)
         if (root.size() > 1 && root.ends_with('/')) root.pop_back();
     std::erase(roots_, "");
@@ -81,7 +65,7 @@ std::string SceneFolder::why_refused(const std::string& path) const {
     const std::string within = name_ + "/";
     const fs::path way = path.starts_with(within) && !roots_.empty() ? fs::path(roots_[0]) / path.substr(within.size())
                                                                      : fs::absolute(path, error);
-    const std::string place = strays(way, ways_) ? std::string() : canonical(path);
+    const std::string place = strays(way, ways_) ? std::string() : real_path(path);
     const auto holds = [&](const std::string& root) { return is_below(place, root); };
     if (!place.empty() && std::any_of(roots_.begin(), roots_.end(), holds)) return {};
     return "it is outside of the scene's folder; --allow FOLDER lets a scene read files elsewhere, too";
