@@ -179,12 +179,12 @@ AttributeEnd
     const auto luminance = [](Spectrum e) { return 0.2126f * e[0] + 0.7152f * e[1] + 0.0722f * e[2]; };
     EXPECT_NEAR(luminance(lights[0].emission), 1.0f,
                 1e-5f);  // infinite: pi lux from a whole hemisphere is a radiance of 1
-    EXPECT_NEAR(luminance(lights[1].emission), 3.0f, 3e-3f);  // a spectrum has luminance one
-    EXPECT_GT(lights[1].emission[0], lights[1].emission[2]);  // and 5000 K is warmer than D65
-    EXPECT_NEAR(luminance(lights[2].emission), 2.0f, 1e-4f);  // 4 pi lumens from an rgb of 2: as pbrt-v4, twice that
-    EXPECT_NEAR(luminance(lights[3].emission), 1.0f / std::numbers::pi_v<float>, 1e-5f);  // 2 pi (1 - cos 60) = pi
-    EXPECT_NEAR(luminance(lights[4].emission), 7.0f, 1e-4f);
-    EXPECT_EQ(lights[4].p0, glm::vec3(0.0f, 0.0f, 1.0f));
+    EXPECT_NEAR(luminance(lights[1].emission), 7.0f, 1e-4f);  // distant lights come next
+    EXPECT_EQ(lights[1].p0, glm::vec3(0.0f, 0.0f, 1.0f));
+    EXPECT_NEAR(luminance(lights[2].emission), 3.0f, 3e-3f);  // a spectrum has luminance one
+    EXPECT_GT(lights[2].emission[0], lights[2].emission[2]);  // and 5000 K is warmer than D65
+    EXPECT_NEAR(luminance(lights[3].emission), 2.0f, 1e-4f);  // 4 pi lumens from an rgb of 2: as pbrt-v4, twice that
+    EXPECT_NEAR(luminance(lights[4].emission), 1.0f / std::numbers::pi_v<float>, 1e-5f);  // 2 pi (1 - cos 60) = pi
 }
 
 // The smooth step of a spot's cosine is 1/2 on average between its angles, so that the power is

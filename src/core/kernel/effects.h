@@ -28,7 +28,9 @@
     E(EFFECT_DEPTH_OF_FIELD, 24, "depth-of-field", "a lens sample per camera ray")                                    \
     E(EFFECT_NOISE, 25, "noise-textures", "gradient noise, eight hashed corners an octave")                           \
     E(EFFECT_ANISOTROPIC, 26, "anisotropic-roughness", "a tangent from the texture coordinates at every hit")         \
-    E(EFFECT_MEDIUM, 27, "medium-absorption", "three exponentials per ray and shadow ray in a medium that absorbs")
+    E(EFFECT_MEDIUM, 27, "medium-absorption", "three exponentials per ray and shadow ray in a medium that absorbs")   \
+    E(EFFECT_LIGHT_TREE, 28, "light-tree",                                                                            \
+      "a walk down a tree of lights per light sample, and per emission found by chance")
 
 // An EffectSet has 64 bits: one integer in C++, two in GLSL, where 64-bit integers are an extension.
 #define LAMPYRIS_EFFECT_CONSTANT(constant, bit, name, cost) CONST EffectSet constant = EFFECT_BIT(bit);
@@ -42,8 +44,8 @@ CONST EffectSet EFFECT_PATH_LOG = EFFECT_BIT(31);
 // Sets for which C++ kernels are built (CPU_EFFECTS of lampyris_kernel): a scene runs on the smallest one that has all of its
 // effects.
 CONST EffectSet kDiffuseEffects = EFFECT_SMOOTH_NORMALS | EFFECT_AREA_LIGHTS;
-CONST EffectSet kGlassEffects =
-    kDiffuseEffects | EFFECT_QUADRICS | EFFECT_QUADRIC_LIGHTS | EFFECT_CONDUCTOR | EFFECT_DIELECTRIC | EFFECT_ROUGH;
+CONST EffectSet kGlassEffects = kDiffuseEffects | EFFECT_QUADRICS | EFFECT_QUADRIC_LIGHTS | EFFECT_LIGHT_TREE |
+                                EFFECT_CONDUCTOR | EFFECT_DIELECTRIC | EFFECT_ROUGH;
 // Opaque, untextured surfaces, lit by points, distant lights and environments.
 CONST EffectSet kSkyEffects = EFFECT_SMOOTH_NORMALS | EFFECT_QUADRICS | EFFECT_CONDUCTOR | EFFECT_ROUGH |
                               EFFECT_IMAGES | EFFECT_POINT_LIGHTS | EFFECT_DISTANT_LIGHTS | EFFECT_ENVIRONMENT |

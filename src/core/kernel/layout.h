@@ -265,7 +265,7 @@ struct LightRecord {
     uint geometry;      // area lights
     uint primitive;     // area lights
     float shadow_end;   // triangle: distance from it at which shadow rays end
-    uint distribution;  // infinite images: offset in `distributions`
+    uint distribution;  // infinite images: offset in `distributions`; others: see LightNode
     Spectrum emission;  // radiance, intensity or irradiance, or the scale of the texture or image
     float choice_probability;
     // Triangle lights. Other kinds keep their numbers in these, too: light_record.h names them.
@@ -277,6 +277,20 @@ struct LightRecord {
     float inverse_area;
     vec3 normal;           // unit, flipped as the geometry's flags say
     float smooth_normals;  // 1 if vertex normals may flip it (point by point)
+};
+
+// Bounds of the lights below a node of the tree by which kernels choose one (light_tree.h): n leaves in 2 n - 1 nodes, a left child
+// after its parent. Leaves are numbered from left to right: LightRecord.distribution has a light's number. `distributions` has the
+// CDF of the leaves' intensities (SceneRecord.tree_cdf; n + 1 integers), and then the light of each leaf.
+struct LightNode {
+    vec3 middle;
+    float radius2;       // squared radius of the sphere around it
+    vec3 axis;           // unit
+    float cos_normals;   // of the cone around the axis that has all normals
+    float intensity;     // sum of the lights' (W/sr), over that of all
+    float cos_emission;  // of the largest angle to a normal at which any of them emits
+    uint right;          // the right child; a leaf: NONE
+    uint two_sided;      // 1: they emit around the negated axis as well
 };
 
 // ---- Camera, film, scene ---------------------------------------------------------------------------------------------
@@ -328,10 +342,14 @@ struct SceneRecord {
     float light_power;     // luminous power of all lights (W)
     uint geometry_count;
     uint instance_count;
-    uint root_node;      // of the top-level BVH
-    uint effects_low;    // effects that the scene needs: the lower 32 bits of the EffectSet
-    uint camera_medium;  // medium in which the camera is
-    uint effects_high;   // the upper 32 bits
+    uint root_node;         // of the top-level BVH
+    uint effects_low;       // effects that the scene needs: the lower 32 bits of the EffectSet
+    uint camera_medium;     // medium in which the camera is
+    uint effects_high;      // the upper 32 bits
+    uint placeless_lights;  // infinite and distant lights, which come first
+    uint tree_share;        // of all other lights in choices by power, out of CDF_TOTAL
+    uint tree_cdf;          // LightNode
+    uint tree_leaves;
     uint unused0;
     uint unused1;
     vec4 bounds;  // the world's bounding sphere: centre, radius

@@ -8,6 +8,7 @@
 #include "core/kernel/light_record.h"
 #include "core/kernel/shape_sampling.h"
 #include "core/kernel/environment.h"
+#include "core/kernel/light_tree.h"
 
 struct LightSample {
     vec3 wi;            // unit direction towards the light
@@ -66,7 +67,7 @@ FN float area_light_pdf(uint index, vec3 ref_p, vec3 position, vec3 ng, vec3 wi)
     } else if (HAS(EFFECT_QUADRICS)) {
         pdf = pdf_quadric_light(light.geometry, ref_p, position, ng, wi);
     }
-    return pdf * light.choice_probability;
+    return pdf * light_choice_probability(index, ref_p);
 }
 
 // The density with which light_sample(ref_p, ...) would have sampled s, where a ray from ref_p in direction wi hit the
@@ -118,7 +119,8 @@ FN bool sample_light_area(IN(LightRecord) light, vec2 u, OUT(AreaSample) s) {
     return s.pdf > 0.0f && is_finite(s.pdf);
 }
 
-FN bool sample_area_light(uint index, vec3 ref_p, vec2 u, INOUT(LightSample) s) {
+// `choice`: the probability of choosing the light.
+FN bool sample_area_light(uint index, float choice, vec3 ref_p, vec2 u, INOUT(LightSample) s) {
     LightRecord light = lights[index];
     ShapeSample shape;
     bool found = false;
@@ -135,7 +137,7 @@ FN bool sample_area_light(uint index, vec3 ref_p, vec2 u, INOUT(LightSample) s) 
     s.position = shape.position;
     s.ng = shape.ng;
     s.end = shadow_end(shape.position, shape.offset, shape.ng, shape.wi, shape.distance);
-    s.pdf = shape.pdf * light.choice_probability;
+    s.pdf = shape.pdf * choice;
     s.radiance = area_emission(index, shape.position, shape.ng, shape.uv, -shape.wi);
     if (HAS(EFFECT_ALPHA)) {
         s.radiance = s.radiance * light_alpha(light, shape.position, shape.ng, shape.uv);
@@ -177,7 +179,7 @@ FN Spectrum point_light_intensity(IN(LightRecord) light, vec3 w) {
     return intensity;
 }
 
-FN bool sample_point_light(uint index, vec3 ref_p, INOUT(LightSample) s) {
+FN bool sample_point_light(uint index, float choice, vec3 ref_p, INOUT(LightSample) s) {
     LightRecord light = lights[index];
     vec3 position = light_position(light);
     vec3 to_light = position - ref_p;
@@ -187,7 +189,7 @@ FN bool sample_point_light(uint index, vec3 ref_p, INOUT(LightSample) s) {
     s.wi = to_light / s.distance;
     s.end = shadow_end(position, point_offset(position, s.wi), s.wi, s.wi, s.distance);
     s.radiance = point_light_intensity(light, -s.wi) / d2;
-    s.pdf = light.choice_probability;
+    s.pdf = choice;
     s.is_delta = 1u;
     return !is_black(s.radiance);
 }
@@ -197,10 +199,11 @@ FN bool sample_point_light(uint index, vec3 ref_p, INOUT(LightSample) s) {
 // Up to this many lights, u.x picks the light and is rescaled to place the point on it. This needs no other number, and
 // stratifies both together. Enough digits are left, because a part of the samples is spread evenly over all lights.
 CONST uint LIGHTS_CHOSEN_BY_PLACE = 256u;
-FN bool light_choice_needs_number() { return scene[0].light_count > LIGHTS_CHOSEN_BY_PLACE; }
+FN bool light_choice_needs_number() { return scene[0].light_count > LIGHTS_CHOSEN_BY_PLACE || uses_light_tree(); }
 
-// Chooses a light in proportion to its power, and samples it from ref_p. u_choice and u_place are bits of random
-// numbers (random.h). `weighted`: the sample is weighed against one of the BSDF by environment_pdf. False if no light arrives.
+// Chooses a light in proportion to its power, or by the tree of lights, and samples it from ref_p. u_choice and u_place are
+// bits of random numbers (random.h). `weighted`: the sample is weighed against one of the BSDF by environment_pdf. False if
+// no light arrives.
 FN bool light_sample(vec3 ref_p, uint u_choice, uvec2 u_place, bool weighted, OUT(LightSample) s) {
     s.wi = vec3(0.0f, 0.0f, 1.0f);
     s.radiance = Spectrum(0.0f);
@@ -214,7 +217,12 @@ FN bool light_sample(vec3 ref_p, uint u_choice, uvec2 u_place, bool weighted, OU
     s.light = NONE;
     if (count == 0u) return false;
     uvec2 u = u_place;
-    if (light_choice_needs_number()) {
+    float choice = 0.0f;
+    if (HAS(EFFECT_LIGHT_TREE) && uses_light_tree()) {
+        LightChoice chosen = choose_light_by_tree(ref_p, u_choice);
+        s.light = chosen.light;
+        choice = chosen.probability;
+    } else if (light_choice_needs_number()) {
         s.light = find_interval(scene[0].light_cdf, count, cdf_number(u_choice));
     } else if (count == 1u) {
         s.light = 0u;
@@ -225,19 +233,21 @@ FN bool light_sample(vec3 ref_p, uint u_choice, uvec2 u_place, bool weighted, OU
         // Back to bits: those below a float's precision are hashed from the other number.
         u.x = (uint(place * 16777216.0f) << 8u) | (hash32(u.y) >> 24u);
     }
+    if (!HAS(EFFECT_LIGHT_TREE) || !uses_light_tree()) choice = choice_by_power(s.light);
     uint kind = lights[s.light].kind;
-    if (HAS(EFFECT_AREA_LIGHTS) && kind <= LIGHT_GEOMETRY) return sample_area_light(s.light, ref_p, unit_floats(u), s);
+    if (HAS(EFFECT_AREA_LIGHTS) && kind <= LIGHT_GEOMETRY)
+        return sample_area_light(s.light, choice, ref_p, unit_floats(u), s);
     if (HAS(EFFECT_ENVIRONMENT) && (kind == LIGHT_INFINITE || kind == LIGHT_INFINITE_IMAGE)) {
         return environment_sample(s.light, u, weighted, s.wi, s.radiance, s.pdf) && !is_black(s.radiance);
     }
     if (HAS(EFFECT_DISTANT_LIGHTS) && kind == LIGHT_DISTANT) {
         s.wi = light_direction(lights[s.light]);
         s.radiance = lights[s.light].emission;
-        s.pdf = lights[s.light].choice_probability;
+        s.pdf = choice;
         s.is_delta = 1u;
         return true;
     }
-    if (HAS(EFFECT_POINT_LIGHTS) || HAS(EFFECT_PROJECTION_LIGHTS)) return sample_point_light(s.light, ref_p, s);
+    if (HAS(EFFECT_POINT_LIGHTS) || HAS(EFFECT_PROJECTION_LIGHTS)) return sample_point_light(s.light, choice, ref_p, s);
     return false;
 }
 

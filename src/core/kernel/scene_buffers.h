@@ -18,7 +18,8 @@
     ARRAY(11, uint, texels, "texels")                   \
     ARRAY(12, LightRecord, lights, "lights")            \
     ARRAY(13, uint, distributions, "distributions")     \
-    ARRAY(18, MediumRecord, media, "media")
+    ARRAY(18, MediumRecord, media, "media")             \
+    ARRAY(20, LightNode, light_nodes, "tree of lights")
 
 // Bindings that need more than an upload of an array of Scene.
 CONST uint BINDING_RECORD = 0u;      // SceneRecord
@@ -28,6 +29,6 @@ CONST uint BINDING_BVH_TRIANGLES = 15u;
 CONST uint BINDING_TOP_LEVEL = 16u;   // Vulkan's acceleration structure, for ray queries
 CONST uint BINDING_UNFINISHED = 17u;  // Vulkan's flag of REPORT_UNFINISHED
 CONST uint BINDING_PATH_LOG = 19u;    // path_log.h; a device binds it (Device::set_path_log)
-CONST uint SCENE_BINDINGS = 20u;
+CONST uint SCENE_BINDINGS = 21u;
 
 #endif

@@ -94,14 +94,15 @@ Rendering::State::State(RenderRequest wanted, RenderObserver* watching)
     const WatchScope scope(observer);
     check(request);
     load();
-    if (request.effects) {
-        loaded.scene.effects.ask(request.effects, "the request");
-        loaded.scene.record_effects(loaded.scene.effects.mask());
-    }
+    if (request.effects) loaded.scene.effects.ask(request.effects, "the request");
     if (request.replay) {
         apply_replay(*request.replay, loaded);
         loaded.scene.effects.ask_path_log();
-        loaded.scene.record_effects(loaded.scene.effects.mask());
+    }
+    if (request.effects || request.replay) {
+        // A tree of lights is there only if the scene was built with one.
+        const uint64_t without = loaded.scene.light_nodes.empty() ? kernel::EFFECT_LIGHT_TREE : 0;
+        loaded.scene.record_effects(loaded.scene.effects.mask() & ~without);
     }
     if (request.sampler) loaded.settings.sampler = *request.sampler;
     if (request.seed) loaded.settings.seed = *request.seed;

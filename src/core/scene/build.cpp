@@ -51,6 +51,7 @@ uint64_t hash_of(const Scene& scene) {
     mix_hash(hash, scene.lights);
     mix_hash(hash, scene.distributions);
     mix_hash(hash, scene.media);
+    mix_hash(hash, scene.light_nodes);
     return hash;
 }
 
@@ -61,7 +62,7 @@ BuiltScene build_scene(SceneDescription&& description, const BuildOptions& optio
     Scene& scene = built.scene;
     struct Parts {
         Parts(SceneDescription& d, const BuildOptions& o, Scene& s, SceneSettings& t, Diagnostics& g)
-            : context{d, o, s, t, g, textures, {}, {}, {}, {}, {}, {}}, textures(context) {}
+            : context{d, o, s, t, g, textures, {}, {}, {}, {}, {}, {}, {}}, textures(context) {}
         BuildContext context;
         TextureBuilder textures;
     } parts(description, options, scene, built.settings, diagnostics);

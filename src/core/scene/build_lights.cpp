@@ -1,6 +1,7 @@
 #include "core/scene/build_lights.h"
 
 #include "core/scene/light_distribution.h"
+#include "core/scene/light_tree.h"
 
 #include <fmt/format.h>
 
@@ -19,12 +20,15 @@ void build_lights(BuildContext& context) {
         }
         if (light.world_from_light.animated()) context.refuse_motion(light.world_from_light, light.location);
         ParameterReader reader(light_registry().find_info(light.type)->parameters, light, context.diagnostics);
-        const size_t infinite = context.infinite_lights.size(), others = context.lights.size();
+        const size_t infinite = context.infinite_lights.size(), distant = context.distant_lights.size(),
+                     others = context.lights.size();
         LightContext light_context{context, light, reader, {&context, &light, "LightSource"}};
         (*factory)(light_context);
         const uint32_t medium = context.medium(light.medium) << 16;
         for (size_t i = infinite; i < context.infinite_lights.size(); ++i)
             context.infinite_lights[i].record.flags |= medium;
+        for (size_t i = distant; i < context.distant_lights.size(); ++i)
+            context.distant_lights[i].record.flags |= medium;
         for (size_t i = others; i < context.lights.size(); ++i) context.lights[i].record.flags |= medium;
         reader.finish("light");
     }
@@ -34,9 +38,11 @@ void finish_lights(BuildContext& context) {
     Scene& scene = context.scene;
     const uint32_t infinite = uint32_t(context.infinite_lights.size());
     std::vector<BuildContext::PendingLight> all = std::move(context.infinite_lights);
+    all.insert(all.end(), context.distant_lights.begin(), context.distant_lights.end());
+    const uint32_t placeless = uint32_t(all.size());
     all.insert(all.end(), context.lights.begin(), context.lights.end());
     for (kernel::GeometryRecord& geometry : scene.geometries)
-        if (geometry.first_light != kernel::NONE) geometry.first_light += infinite;
+        if (geometry.first_light != kernel::NONE) geometry.first_light += placeless;
 
     const double radius = double(scene.record.bounds.w);
     std::vector<double> powers;
@@ -56,7 +62,14 @@ void finish_lights(BuildContext& context) {
     }
     scene.record.light_count = uint32_t(all.size());
     scene.record.infinite_lights = infinite;
-    if (!all.empty()) choose_lights(scene, powers);
+    scene.record.placeless_lights = placeless;
+    if (all.empty()) return;
+    choose_lights(scene, powers);
+    if (!context.diagnostics.has_errors() && build_light_tree(scene, powers))
+        context.ask(kernel::EFFECT_LIGHT_TREE, [&] {
+            return fmt::format("{} (the last of {} lights)", context.description.sources->describe(all.back().location),
+                               all.size());
+        });
 }
 
 }  // namespace lampyris

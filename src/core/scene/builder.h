@@ -51,14 +51,15 @@ struct BuildContext {
     Diagnostics& diagnostics;
     TextureBuilder& textures;
 
-    // Lights are kept in two groups, because the infinite ones come first in Scene::lights. Powers serve as weights.
+    // Lights are kept in three groups, because the infinite ones come first in Scene::lights, and distant ones next. Powers serve
+    // as weights.
     struct PendingLight {
         kernel::LightRecord record;
         double power = 0.0;  // luminous; of infinite and distant lights: per unit of the scene's radius squared
         bool scales_with_scene = false;
         Location location;  // of the directive
     };
-    std::vector<PendingLight> infinite_lights, lights;
+    std::vector<PendingLight> infinite_lights, distant_lights, lights;
 
     // The record of SceneDescription::materials[i] (kNone: pbrt-v4's default, diffuse 0.5), built on first use. `path` holds
     // the materials that are being built, outermost first: a mix must not contain itself.

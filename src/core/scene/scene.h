@@ -39,6 +39,7 @@ struct Scene {
     std::vector<uint32_t> texels;
     std::vector<kernel::LightRecord> lights;
     std::vector<uint32_t> distributions;
+    std::vector<kernel::LightNode> light_nodes;  // with EFFECT_LIGHT_TREE
     std::vector<kernel::MediumRecord> media;  // empty, or [0] is empty space
     std::vector<GeometrySet> sets;            // [0] is the world
     std::vector<uint32_t> instance_sets;      // set of each instance; [0] = 0

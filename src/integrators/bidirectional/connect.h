@@ -57,6 +57,7 @@ FN Spectrum connect_to_light(IN(Subpath) path, IN(Surface) s, IN(Vertex) v, uint
                   INV_PI / (light_sides(record) * light.pdf);
     } else if (light.distance < INFINITE_DISTANCE) {
         emitted = point_emission_pdf(record, -light.wi) / mis_area(sqr(light.distance));
+        if (HAS(EFFECT_LIGHT_TREE)) emitted *= choice_by_power(light.light) / light.pdf;  // as photons choose
     } else {
         emitted = mis_area_density(1.0f / distant_area());
     }

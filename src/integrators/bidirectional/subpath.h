@@ -92,7 +92,13 @@ FN Subpath light_path_begin(IN(Emission) start, int maxdepth) {
 // To be called at the first vertex, before subpath_arrives: next-event estimation from s samples area lights in another way
 // than emission.
 FN void light_path_meets_first(INOUT(Subpath) path, IN(Emission) start, IN(Surface) s) {
-    if (!HAS(EFFECT_AREA_LIGHTS) || lights[start.light].kind > LIGHT_GEOMETRY) return;
+    uint kind = lights[start.light].kind;
+    if (!HAS(EFFECT_AREA_LIGHTS) || kind > LIGHT_GEOMETRY) {
+        if (HAS(EFFECT_LIGHT_TREE))
+            path.mis.a *=
+                mis_term(light_choice_probability(start.light, s.position) / choice_by_power(start.light), heuristic());
+        return;
+    }
     float density = area_light_pdf(start.light, s.position, start.position, start.ng, -start.direction);
     path.mis.a = path.mis.a * mis_term(density, heuristic());
 }

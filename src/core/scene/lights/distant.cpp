@@ -20,7 +20,8 @@ void build(LightContext& context) {
         irradiance *= illuminance;
     record.emission = irradiance;
     context.ask(kernel::EFFECT_DISTANT_LIGHTS);
-    context.build.lights.push_back({record, luminance_of(irradiance) * std::numbers::pi, true, context.light.location});
+    context.build.distant_lights.push_back(
+        {record, luminance_of(irradiance) * std::numbers::pi, true, context.light.location});
 }
 
 const RegisterLight distant(
