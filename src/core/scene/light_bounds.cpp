@@ -24,6 +24,7 @@ struct Cone {
 // The smallest cone that contains both.
 Cone joined_cone(const Cone& a, const Cone& b) {
     if (a.angle < b.angle) return joined_cone(b, a);
+    if (a.angle >= kPi) return a;  // of points: the most, and angles take time
     const double between = angle_between(a.axis, b.axis);
     if (std::min(between + b.angle, kPi) <= a.angle) return a;
     const double angle = 0.5 * (a.angle + between + b.angle);
