@@ -6,7 +6,6 @@
 #include <glm/vec3.hpp>
 
 #include <limits>
-#include <optional>
 
 namespace lampyris {
 
