@@ -116,7 +116,7 @@ class TestScene {
         scene.sets.assign(1, {0, uint32_t(scene.geometries.size())});
         scene.record.geometry_count = uint32_t(scene.geometries.size());
         scene.record.instance_count = 1;
-        scene.record_effects(kernel::kAllEffects & ~kernel::EFFECT_LIGHT_TREE);  // it has none
+        scene.record_effects(kernel::kAllEffects);
         scene.record.bounds = glm::vec4(0.0f, 0.0f, 0.0f, 100.0f);
         scene.positions.resize(scene.positions.size() + 4);
         const auto at_least_one = [](auto& array) {

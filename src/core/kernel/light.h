@@ -6,7 +6,9 @@
 #define LAMPYRIS_KERNEL_LIGHT
 
 #include "core/kernel/light_record.h"
-#include "core/kernel/shape_sampling.h"
+#include "core/kernel/triangle_sampling.h"
+#include "core/kernel/quadric_sampling.h"
+#include "core/kernel/patch_sampling.h"
 #include "core/kernel/environment.h"
 #include "core/kernel/light_tree.h"
 

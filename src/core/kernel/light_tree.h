@@ -13,7 +13,7 @@ CONST uint LIGHT_CHOICES_BY_POWER = 8u;
 CONST float LIGHTS_FAR =
     64.0f;  // squared distance, over the squared radius, from which lights are in about the same place
 
-FN bool uses_light_tree() { return CALLED_FOR(EFFECT_LIGHT_TREE); }
+FN bool uses_light_tree() { return HAS(EFFECT_LIGHT_TREE) && scene[0].tree_leaves != 0u; }
 FN float choice_by_power(uint light) { return lights[light].choice_probability; }
 
 // The cosine and sine of max(a - b, 0), for angles between 0 and pi by their sines and cosines.

@@ -99,11 +99,7 @@ Rendering::State::State(RenderRequest wanted, RenderObserver* watching)
         apply_replay(*request.replay, loaded);
         loaded.scene.effects.ask_path_log();
     }
-    if (request.effects || request.replay) {
-        // A tree of lights is there only if the scene was built with one.
-        const uint64_t without = loaded.scene.light_nodes.empty() ? kernel::EFFECT_LIGHT_TREE : 0;
-        loaded.scene.record_effects(loaded.scene.effects.mask() & ~without);
-    }
+    if (request.effects || request.replay) loaded.scene.record_effects(loaded.scene.effects.mask());
     if (request.sampler) loaded.settings.sampler = *request.sampler;
     if (request.seed) loaded.settings.seed = *request.seed;
     sampler = sampler_number(loaded.settings.sampler);
