@@ -1,6 +1,7 @@
 #include "core/scene/build_shapes.h"
 
 #include "core/scene/area_lights.h"
+#include "core/scene/quadric_box.h"
 #include "core/scene/touching.h"
 
 #include <fmt/format.h>
@@ -71,12 +72,7 @@ Box set_bounds(const Scene& scene, const GeometrySet& set) {
                 box.add({scene.positions[3 * v], scene.positions[3 * v + 1], scene.positions[3 * v + 2]});
             }
         } else {
-            Box own;
-            const bool disk = g.kind == kernel::GEOMETRY_DISK;
-            const double radius = g.quadric.radius;
-            own.add({-radius, -radius, disk ? g.quadric.height : g.quadric.z_min});
-            own.add({radius, radius, disk ? g.quadric.height : g.quadric.z_max});
-            own.add_to(box, scene.transforms[g.transform]);
+            for (const glm::dvec3& p : quadric_corners(scene, g)) box.add(p);
         }
     }
     return box;

@@ -1,5 +1,7 @@
 #include "core/scene/light_bounds.h"
 
+#include "core/scene/quadric_box.h"
+
 #include <glm/glm.hpp>
 
 #include <algorithm>
@@ -68,16 +70,10 @@ void add_patch(LightBounds& bounds, const Scene& scene, const kernel::GeometryRe
 }
 
 void add_quadric(LightBounds& bounds, const Scene& scene, const kernel::GeometryRecord& g) {
-    const kernel::TransformRecord& t = scene.transforms[g.transform];
-    const bool disk = g.kind == kernel::GEOMETRY_DISK;
-    const double r = g.quadric.radius, low = disk ? g.quadric.height : g.quadric.z_min,
-                 high = disk ? g.quadric.height : g.quadric.z_max;
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec4 p(corner & 1 ? r : -r, corner & 2 ? r : -r, corner & 4 ? high : low, 1.0);
-        bounds.add({glm::dot(glm::dvec4(t.to0), p), glm::dot(glm::dvec4(t.to1), p), glm::dot(glm::dvec4(t.to2), p)});
-    }
+    for (const glm::dvec3& p : quadric_corners(scene, g)) bounds.add(p);
     set_all_directions(bounds);
-    if (!disk) return;
+    if (g.kind != kernel::GEOMETRY_DISK) return;
+    const kernel::TransformRecord& t = scene.transforms[g.transform];
     const glm::dvec3 normal(t.from2.x, t.from2.y, t.from2.z);  // of a plane of equal z
     if (!(glm::length(normal) > 0)) return;
     bounds.axis = glm::normalize(normal), bounds.normals = 0, bounds.two_sided = true;
@@ -107,10 +103,12 @@ LightBounds joined(const LightBounds& a, const LightBounds& b) {
 }
 
 double tree_cost(const LightBounds& bounds) {
+    if (!(bounds.intensity > 0)) return 0;
     const double o = bounds.normals, w = std::min(o + bounds.emission, kPi);
     const double directions =
-        2 * kPi * (1 - std::cos(o)) +
-        0.5 * kPi * (2 * w * std::sin(o) - std::cos(o - 2 * w) - 2 * o * std::sin(o) + std::cos(o));
+        o >= kPi ? 4 * kPi
+                 : 2 * kPi * (1 - std::cos(o)) +
+                       0.5 * kPi * (2 * w * std::sin(o) - std::cos(o - 2 * w) - 2 * o * std::sin(o) + std::cos(o));
     const glm::dvec3 diagonal = bounds.high - bounds.low;
     return bounds.intensity * directions * glm::dot(diagonal, diagonal);
 }

@@ -60,6 +60,7 @@ class LightTreeBuilder {
 
     // Moves those that go to the left to the front; returns their number.
     static size_t split(std::span<Leaf> leaves, int depth) {
+        if (leaves.size() == 2) return 1;
         glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
         for (const Leaf& leaf : leaves) {
             low = glm::min(low, leaf.bounds.middle());

@@ -1,6 +1,8 @@
 #include "core/scene/touching.h"
 
+#include "core/scene/quadric_box.h"
 #include "core/scene/touching_inset.h"
+#include "core/scene/touching_passing.h"
 #include "core/scene/touching_planes.h"
 
 #include <fmt/format.h>
@@ -23,46 +25,6 @@ namespace lampyris {
 namespace {
 
 using glm::dvec3;
-
-// Which materials let light pass. Those of a stranger's plugin are not known to.
-class Passing {
- public:
-    explicit Passing(const Scene& scene) : scene_(scene), known_(scene.materials.size(), kUnknown) {}
-
-    bool operator()(const kernel::GeometryRecord& g) {
-        return g.alpha_texture != kNone || g.alpha < 1.0f || material(g.material);
-    }
-    // Whether it is the boundary of a body, so that "inwards" has a meaning. Shapes that emit stay where their lights are.
-    bool is_boundary(const kernel::GeometryRecord& g) const {
-        const uint32_t kind = scene_.materials[g.material].kind;
-        return (kind == kernel::MATERIAL_DIELECTRIC || kind == kernel::MATERIAL_INTERFACE) &&
-               g.kind <= kernel::GEOMETRY_BILINEAR && g.alpha_texture == kNone && g.alpha >= 1.0f &&
-               g.first_light == kernel::NONE;
-    }
-
- private:
-    enum Answer : uint8_t { kUnknown, kNo, kYes };
-
-    bool material(uint32_t index) {
-        if (known_[index] != kUnknown) return known_[index] == kYes;
-        known_[index] = kNo;
-        const kernel::MaterialRecord& m = scene_.materials[index];
-        bool passes = false;
-        switch (m.kind) {
-            case kernel::MATERIAL_DIELECTRIC:
-            case kernel::MATERIAL_INTERFACE:
-            case kernel::MATERIAL_THINDIELECTRIC:
-            case kernel::MATERIAL_DIFFUSETRANSMISSION: passes = true; break;
-            case kernel::MATERIAL_MIX: passes = material(m.first_material) || material(m.second_material); break;
-            default: break;
-        }
-        known_[index] = passes ? kYes : kNo;
-        return passes;
-    }
-
-    const Scene& scene_;
-    std::vector<Answer> known_;
-};
 
 // The box of a box's corners.
 PlaceBox transformed(const PlaceBox& box, const kernel::TransformRecord& t) {
@@ -359,15 +321,8 @@ class Search {
         const kernel::GeometryRecord& g = scene_.geometries[geometry];
         for (uint32_t i = 0; is_new && i < plane_triangle_count(g); ++i)
             for (const dvec3& p : plane_triangle(scene_, geometry, i).corners) add(p);
-        if (is_new && (g.kind == kernel::GEOMETRY_SPHERE || g.kind == kernel::GEOMETRY_CYLINDER)) {
-            const kernel::TransformRecord& t = scene_.transforms[g.transform];
-            const double r = g.quadric.radius;
-            for (int corner = 0; corner < 8; ++corner) {
-                const glm::dvec4 p(corner & 1 ? r : -r, corner & 2 ? r : -r,
-                                   corner & 4 ? g.quadric.z_max : g.quadric.z_min, 1.0);
-                add({glm::dot(glm::dvec4(t.to0), p), glm::dot(glm::dvec4(t.to1), p), glm::dot(glm::dvec4(t.to2), p)});
-            }
-        }
+        if (is_new && g.kind > kernel::GEOMETRY_BILINEAR)
+            for (const dvec3& p : quadric_corners(scene_, g)) add(p);
         return glm::length(high - low);
     }
 
