@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <thread>
@@ -36,8 +37,10 @@ struct BenchOptions {
 uint32_t parse_count(const std::string& text) {
     double value = 0;
     const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (code != std::errc() || end != text.data() + text.size() || !(value >= 1 && value <= 2e8))
-        throw InputError(fmt::format("error: --points {}: expected numbers from 1 to 2e8, for example 1e3,1e6", text));
+    if (code != std::errc() || end != text.data() + text.size() ||
+        !(value >= 1 && value <= 2e8 && value == std::floor(value)))
+        throw InputError(
+            fmt::format("error: --points {}: expected whole numbers from 1 to 2e8, for example 1e3,1e6", text));
     return uint32_t(value);
 }
 

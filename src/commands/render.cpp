@@ -47,13 +47,15 @@ std::vector<std::string> choose_outputs(const RenderOptions& options, const Scen
     return outputs;
 }
 
-// Throws InputError if two of the files that are written are the same, or one is the scene: one would replace the other.
+// Throws InputError if two of the files that are written are the same, or one is the scene or the reference: one would replace
+// the other.
 void check_distinct(const RenderOptions& options, const std::vector<std::string>& outputs) {
     std::vector<std::pair<std::string, std::string>> files;
     if (!options.request.scene.text) files.emplace_back("the scene", options.request.scene.name);
     for (const std::string& output : outputs) files.emplace_back("-o", output);
     files.emplace_back("--stats", options.statistics_file);
     files.emplace_back("--checkpoint", options.request.checkpoint);
+    files.emplace_back("--reference", options.request.reference);
     std::map<std::string, std::pair<std::string, std::string>> seen;
     for (const auto& [option, file] : files) {
         std::error_code error;
@@ -67,7 +69,7 @@ void check_distinct(const RenderOptions& options, const std::vector<std::string>
 }
 
 void print_summary(const RunRecord& run, const std::vector<std::string>& outputs) {
-    print("{}: {}, {}, {} ({} in all), {:.2f} Mrays/s on {}\n", run.scene, run.integrator,
+    print("{}: {}, {}, {} ({} in all), {:.2f} Mrays/s on {}\n", shown(run.scene), run.integrator,
           counted(run.progress.passes, "pass", "passes"), duration_text(run.progress.wall_s),
           duration_text(run.total_s),
           run.progress.wall_s > 0.0 ? double(run.film.rays) / run.progress.wall_s * 1e-6 : 0.0, run.backend);

@@ -162,12 +162,8 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
     command.add_option("--threads", o.request.device_options.threads, "Threads of the CPU (default: all)")
         ->check(CLI::Range(1u, 4096u));
     command.add_option("--seed", o.request.seed, "Seed of the random numbers");
-    command.add_option("--resolution", o.texts.resolution, "Size to use instead of the scene's")
-        ->type_name("WxH")
-        ->check(not_empty);
-    command.add_option("--crop", o.texts.crop, "Render these pixels only (half-open)")
-        ->type_name("x0,y0,x1,y1")
-        ->check(not_empty);
+    command.add_option("--resolution", o.texts.resolution, "Size to use instead of the scene's")->type_name("WxH");
+    command.add_option("--crop", o.texts.crop, "Render these pixels only (half-open)")->type_name("x0,y0,x1,y1");
     command
         .add_option(
             "--spp", o.texts.spp,
@@ -175,8 +171,7 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
         ->type_name("N");
     command.add_option("--passes", o.texts.passes, "Stop after this many passes")->type_name("N");
     command.add_option("--time", o.texts.time, "Stop after this much rendering time: 30s, 5min, 2h")
-        ->type_name("DURATION")
-        ->check(not_empty);
+        ->type_name("DURATION");
     command
         .add_option("--target-error", o.request.limits.target_error,
                     "Stop when the estimated relMSE is below this and can be trusted")
@@ -192,15 +187,13 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
     command
         .add_option("--checkpoint", o.request.checkpoint,
                     "Keep the state of the rendering in this file, so that --resume goes on after a crash")
-        ->type_name("FILE")
-        ->check(not_empty);
+        ->type_name("FILE");
     command.add_flag("--resume", o.request.resume, "Go on from the checkpoint, if there is one");
     command
         .add_option("--every", o.texts.every,
                     "Write the image and statistics so far, and the checkpoint, this often: 60s, 5min (default of "
                     "checkpoints: 60s)")
-        ->type_name("DURATION")
-        ->check(not_empty);
+        ->type_name("DURATION");
     command.add_option("--plugin", o.plugins, "Load a plugin; may be given several times")->type_name("FILE.so");
     add_allow_option(command, o.allowed);
     command.add_flag("--skip-unsupported", o.request.skip_unsupported,
@@ -208,16 +201,16 @@ void add_render_options(CLI::App& command, RenderOptions& o) {
     command
         .add_option("--max-memory", o.texts.max_memory,
                     "Most memory for the program; buffers that do not fit are not made: 512M, 8G")
-        ->type_name("SIZE")
-        ->check(not_empty);
+        ->type_name("SIZE");
     command.add_option("--view", o.write.view, "Display transform of a PNG")->capture_default_str()->type_name("NAME");
     command.add_option("--exposure", o.write.exposure, "Exposure of a PNG, in stops")->type_name("EV");
     command.add_option("--replay", o.texts.replay, "Render one sample of one pixel and print it")
-        ->type_name("X,Y,PASS")
-        ->check(not_empty);
+        ->type_name("X,Y,PASS");
     command.add_option("--set", o.texts.settings, "Any parameter: integrator.maxdepth=12, backend.ray_query=on")
         ->type_name("SECTION.KEY=VALUE");
     command.add_flag("-q,--quiet", o.quiet, "Print errors only");
+    for (CLI::Option* option : command.get_options())
+        if (option->get_items_expected_max() > 0) option->check(not_empty);
 }
 
 void add_allow_option(CLI::App& command, std::vector<std::string>& folders) {

@@ -127,6 +127,8 @@ OUTPUTS = [
     Fault("image and statistics are one file by a link", ["--stats", "link"], 1, "are the same file",
           has_link("link", "o.exr")),
     Fault("the statistics are the scene", ["--stats", "scene.pbrt"], 1, "are the same file"),
+    Fault("the image is the reference", ["--reference", "o.exr"], 1, "are the same file",
+          has_file("o.exr", "kept"), outcome="the reference stays"),
     Fault("the folder of the statistics does not exist", ["--stats", "none/s.json"], 1, "'none'"),
     Fault("the folder of the checkpoint does not exist", ["--checkpoint", "none/c"], 1, "'none'"),
     Fault("the disk is full", [], 2, SAVED, FULL, output="full.exr"),

@@ -176,6 +176,11 @@ bool ParameterReader::get_bool(std::string_view name) {
 
 std::string ParameterReader::get_string(std::string_view name) {
     const ParameterSpec& declared = spec(name);
+    if (const Parameter* given = find(name); declared.required && given && given->type == ParameterType::kString) {
+        const auto* texts = std::get_if<std::vector<std::string>>(&given->values);
+        if (texts && texts->size() == 1 && texts->front().empty())
+            error(name, fmt::format("\"{}\" is empty", name), declared.doc);
+    }
     return declared.choices.empty()
                ? entity_->parameters.get_string(name, declared.text, *diagnostics_)
                : entity_->parameters.get_choice(name, declared.text, declared.choices, *diagnostics_);

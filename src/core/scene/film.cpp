@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
 namespace lampyris {
@@ -24,7 +25,8 @@ std::optional<std::array<T, 4>> read_bounds(ParameterReader& reader, const char*
     const Parameter* parameter = reader.find(name);
     if (!parameter) return {};
     const auto* numbers = std::get_if<std::vector<T>>(&parameter->values);
-    if (!numbers) {
+    constexpr ParameterType kType = std::is_same_v<T, float> ? ParameterType::kFloat : ParameterType::kInteger;
+    if (!numbers || parameter->type != kType) {
         reader.error(name, fmt::format("\"{}\" is of type {}", name, type_name(parameter->type)), hint);
         return {};
     }

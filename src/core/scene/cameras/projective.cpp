@@ -22,7 +22,10 @@ std::array<float, 4> screen_window(CameraContext& camera) {
                                                 : std::array{-1.0f, 1.0f, -1.0f / aspect, 1.0f / aspect};
     if (const Parameter* given = camera.reader.find("screenwindow")) {
         const auto* numbers = std::get_if<std::vector<float>>(&given->values);
-        if (numbers && numbers->size() != 4) {
+        if (given->type != ParameterType::kFloat) {
+            camera.reader.error("screenwindow",
+                                fmt::format("\"screenwindow\" is of type {}, not float", type_name(given->type)));
+        } else if (numbers && numbers->size() != 4) {
             camera.reader.warning(
                 "screenwindow",
                 fmt::format("\"screenwindow\" has {} numbers, not 4: its default is used, as in pbrt-v4",

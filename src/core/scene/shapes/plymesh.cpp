@@ -20,10 +20,7 @@ void build(ShapeContext& context) {
             context.build.diagnostics.unsupported(reader.location(name), "displacement of a mesh",
                                                   "without it, the mesh is as in the file");
     }
-    if (filename.empty()) {
-        if (reader.has("filename")) reader.error("filename", "\"filename\" is empty", "the name of a PLY file");
-        return;  // else reported as a missing parameter
-    }
+    if (filename.empty()) return;  // reported
     const std::string path = context.build.resolve(filename);
     if (const std::string why = context.build.description.folder.why_refused(path); !why.empty()) {
         reader.error("filename", fmt::format("the mesh {} is not read: {}", shown(filename), why));
