@@ -91,6 +91,9 @@ TEST(SceneMeaning, SpectraMustMakeSense) {
     expect_error("LightSource \"point\" \"float I\" 5", 1, 21,
                  {"\"I\" is of type float", "rgb, blackbody or spectrum"});
     expect_error("LightSource \"point\" \"blackbody I\" -5", 1, 35, {"temperature above 0 K"});
+    expect_error("Material \"dielectric\" \"point2 eta\" [ 2 2 ]\n" + kTriangle, 1, 38,
+                 {"\"eta\" is of type point2", "float, or spectrum"});
+    expect_error("LightSource \"projection\" \"string filename\" \"\"", 1, 44, {"\"filename\" is empty"});
 }
 
 TEST(SceneMeaning, MixesRefer) {
@@ -166,6 +169,9 @@ TEST(SceneMeaning, FilmsAndCameras) {
     EXPECT_NE(errors("Camera \"perspective\" \"float fov\" 180").find("must be above 0 to 179.9"), std::string::npos);
     EXPECT_NE(errors("Sampler \"random\"").find("unknown sampler \"random\""), std::string::npos);
     EXPECT_NE(errors("PixelFilter \"gausian\"").find("did you mean"), std::string::npos);
+    EXPECT_NE(errors("Camera \"perspective\" \"spectrum screenwindow\" [ 400 1 700 2 ]").find("is of type spectrum"),
+              std::string::npos);
+    EXPECT_NE(errors("Film \"rgb\" \"point2 cropwindow\" [ 0 .5 0 .5 ]").find("is of type point2"), std::string::npos);
 }
 
 // If pbrt-v4 continues after an array of the wrong length, or values in the wrong order, so does Lampyris: as if they were

@@ -105,6 +105,19 @@ TEST(NegativeLight, SpectraMakeNone) {
     }
 }
 
+// What a metal is made of is no light, but is not negative either.
+TEST(NegativeLight, MetalsHaveNone) {
+    const auto image_of = [](const std::string& numbers) {
+        return build_world("Material \"conductor\" \"spectrum eta\" [ 400 1.5 700 1.5 ] \"spectrum k\" " + numbers +
+                           "\nShape \"sphere\"\n");
+    };
+    const BuiltText negative = image_of("[ 400 -3 700 -3 ]"), none = image_of("[ 400 0 700 0 ]");
+    EXPECT_EQ(negative.all_errors() + none.all_errors(), "");
+    ASSERT_EQ(negative.warnings.size(), 1u);
+    EXPECT_NE(negative.warnings[0].find("holds 2 negative values"), std::string::npos) << negative.warnings[0];
+    EXPECT_EQ(rgb_of(negative.scene().materials.back().color1), rgb_of(none.scene().materials.back().color1));
+}
+
 class NegativeSky : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Backends, NegativeSky, testing::ValuesIn(usable_backends()),
                          [](const auto& info) { return name_of(info.param); });

@@ -7,6 +7,7 @@
 #include <glm/glm.hpp>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -45,6 +46,51 @@ TEST(Spectrum, BlackBodyPeaksWhereWienSays) {
         xyz += cie_xyz(w) * named_spectrum("stdillum-A")->at(w);
     EXPECT_NEAR(xyz.x / (xyz.x + xyz.y + xyz.z), 0.44757f, 5e-4f);
     EXPECT_NEAR(xyz.y / (xyz.x + xyz.y + xyz.z), 0.40745f, 5e-4f);
+}
+
+// Wien's law, whose colour has a limit in which all is at the long end; and Rayleigh and Jeans's, T / wavelength^4.
+TEST(Spectrum, BlackBodiesOfAnyTemperatureShine) {
+    const auto of_temperature = [](float kelvin) {
+        return light_rgb([kelvin](float w) { return visible_blackbody(w, kelvin); });
+    };
+    for (const float kelvin : {1000.0f, 6500.0f, 1e5f})
+        expect_near(of_temperature(kelvin), light_rgb([kelvin](float w) { return blackbody(w, kelvin); }), 1e-5f);
+    const glm::vec3 hottest = light_rgb([](float w) { return std::pow(w / 360.0f, -4.0f); });
+    for (const float kelvin : {1e10f, 1e15f, 1e20f, 3e38f}) expect_near(of_temperature(kelvin), hottest, 1e-5f);
+    EXPECT_GT(hottest.z, hottest.x);
+    const glm::vec3 coldest = light_rgb([](float w) { return w == kLastSeen ? 1.0f : 0.0f; });
+    EXPECT_GT(coldest.x, 1.0f);
+    for (const float kelvin : {1e-30f, 1e-10f, 1.0f}) expect_near(of_temperature(kelvin), coldest, 1e-5f);
+    for (const float kelvin : {1e-38f, 1.0f, 100.0f, 1e16f, 3e38f}) {
+        const BuiltText built = build_world(fmt::format("LightSource \"point\" \"blackbody I\" {}\n", kelvin));
+        EXPECT_EQ(built.all_errors(), "") << kelvin;
+        EXPECT_GT(rgb_of(built.scene().lights.at(0).emission).x, 0.5f) << kelvin;
+    }
+}
+
+// The colour of a narrow line is that of its wavelength, wherever it is between the steps of the integral.
+TEST(Spectrum, NarrowLinesAreSeen) {
+    for (const float middle : {555.0f, 555.35f, 610.5f, 470.001f})
+        for (const float width : {0.1f, 2.0f}) {
+            const std::vector<float> nodes = {middle - width, middle, middle + width};
+            const auto line = [&](float w) { return std::max(0.0f, 1.0f - std::abs(w - middle) / width); };
+            const glm::vec3 colour = rec709_from_xyz(cie_xyz(middle) / cie_xyz(middle).y), most = glm::abs(colour);
+            expect_near(light_rgb(line, nodes), colour, 0.005f * std::max({most.x, most.y, most.z}));
+        }
+    const BuiltText built = build_world("LightSource \"point\" \"spectrum I\" [ 555.2 0 555.5 1 555.8 0 ]\n");
+    EXPECT_GT(rgb_of(built.scene().lights.at(0).emission).y, 1.0f);
+    // Reflectances of a step between two wavelengths: the part of the light that is in between.
+    const auto step = [](float edge) {
+        const std::vector<float> nodes = {360.0f, edge, edge + 0.01f, 830.0f};
+        return reflectance_rgb([edge](float w) { return w <= edge ? 1.0f : 0.0f; }, nodes).x;
+    };
+    EXPECT_NEAR(step(600.5f), 0.5f * (step(600.0f) + step(601.0f)), 1e-3f);
+}
+
+TEST(Spectrum, LightThatIsNotSeenIsTold) {
+    const BuiltText built = build_world("LightSource \"point\" \"spectrum I\" [ 300 1 340 1 ]\n");
+    ASSERT_EQ(built.warnings.size(), 1u);
+    EXPECT_NE(built.warnings[0].find("no light that is seen"), std::string::npos) << built.warnings[0];
 }
 
 TEST(Spectrum, Rec709FromXyzIsTheStandards) {
@@ -107,7 +153,7 @@ TEST(Spectrum, RememberedOnesAreThoseComputed) {
     EXPECT_EQ(first, colours());
     // Each differs from the next one in its red part: 600 lights, then pairs of materials.
     for (size_t i = 1; i < 600; ++i) EXPECT_NE(first[i].x, first[i - 1].x) << i;
-    const auto at = [](float w) { return blackbody(w, 6990.0f); };
+    const auto at = [](float w) { return visible_blackbody(w, 6990.0f); };
     const SampledSpectrum sampled = [&] {
         SampledSpectrum s;
         for (float w = kFirstWavelength; w <= kLastWavelength; w += 5.0f)

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace lampyris {
 
@@ -23,13 +24,33 @@ glm::dmat3 adapt(glm::dvec2 from, glm::dvec2 to) {
     return glm::inverse(cone) * glm::dmat3(scale.x, 0, 0, 0, scale.y, 0, 0, 0, scale.z) * cone;
 }
 
-// The integral of the spectrum's product with the colour-matching functions, 1 nm steps.
-glm::dvec3 integrate_xyz(const std::function<float(float)>& spectrum) {
-    glm::dvec3 xyz(0.0);
+// The integral of the spectrum's product with the colour-matching functions by the trapezoidal rule: steps of 1 nm, divided at
+// `nodes`, where a spectrum bends, so that no line falls between them. Both ends count whole; next to nothing is seen there.
+glm::dvec3 integrate_xyz(const SpectralFunction& spectrum, std::span<const float> nodes = {}) {
+    std::vector<float> steps, all;
     for (float wavelength = kFirstWavelength; wavelength <= kLastWavelength; wavelength += 1.0f)
-        xyz += glm::dvec3(cie_xyz(wavelength)) * double(spectrum(wavelength));
+        steps.push_back(wavelength);
+    const auto first = std::upper_bound(nodes.begin(), nodes.end(), kFirstWavelength),
+               last = std::lower_bound(first, nodes.end(), kLastWavelength);
+    std::set_union(steps.begin(), steps.end(), first, last, std::back_inserter(all));
+    glm::dvec3 xyz(0.0);
+    for (size_t i = 0; i < all.size(); ++i) {
+        const float low = i > 0 ? all[i - 1] : all[i] - 1.0f, high = i + 1 < all.size() ? all[i + 1] : all[i] + 1.0f;
+        xyz += glm::dvec3(cie_xyz(all[i])) * double(spectrum(all[i])) * (0.5 * (double(high) - double(low)));
+    }
     return xyz;
 }
+
+// The logarithm of Planck's law (1901), up to a constant: its value leaves the range of numbers for cold bodies. The constants
+// are exact in the SI of 2019.
+double log_planck(double nanometres, double kelvin) {
+    constexpr double kC2 = 1e9 * 6.62607015e-34 * 299792458.0 / 1.380649e-23;
+    const double x = kC2 / (nanometres * kelvin);
+    return -5.0 * std::log(nanometres) - (x > 40.0 ? x : std::log(std::expm1(x)));
+}
+
+// Where it is largest, by Wien's displacement law, nm.
+double wien_peak(double kelvin) { return 2.8977721e6 / kelvin; }
 
 }  // namespace
 
@@ -56,28 +77,28 @@ glm::vec3 rec709_from_xyz(glm::vec3 xyz) {
 }
 
 float blackbody(float wavelength, float kelvin) {
-    // Planck 1901; the constants are exact in the SI of 2019. The maximum follows from Wien's displacement law.
-    constexpr double kC1 = 2.0 * 6.62607015e-34 * 299792458.0 * 299792458.0;
-    constexpr double kC2 = 6.62607015e-34 * 299792458.0 / 1.380649e-23;
-    if (!(kelvin > 0.0f)) return 0.0f;
-    const auto planck = [&](double metres) {
-        return kC1 / (std::pow(metres, 5.0) * std::expm1(kC2 / (metres * double(kelvin))));
-    };
-    return float(planck(double(wavelength) * 1e-9) / planck(2.8977721e-3 / double(kelvin)));
+    return float(std::exp(log_planck(wavelength, kelvin) - log_planck(wien_peak(kelvin), kelvin)));
 }
 
-glm::vec3 light_rgb(const std::function<float(float)>& spectrum) {
-    const glm::dvec3 xyz = integrate_xyz(spectrum);
+float visible_blackbody(float wavelength, float kelvin) {
+    if (wavelength > kLastSeen) return 0.0f;
+    const double peak = std::clamp(wien_peak(kelvin), double(kFirstWavelength), double(kLastSeen));
+    return float(std::exp(log_planck(wavelength, kelvin) - log_planck(peak, kelvin)));
+}
+
+glm::vec3 light_rgb(const SpectralFunction& spectrum, std::span<const float> nodes) {
+    const glm::dvec3 xyz = integrate_xyz(spectrum, nodes);
     return xyz.y > 0.0 ? rec709_from_xyz(glm::vec3(xyz / xyz.y)) : glm::vec3(0.0f);
 }
 
-glm::vec3 reflectance_rgb(const std::function<float(float)>& spectrum) {
-    const auto rgb_under_d65 = [](const std::function<float(float)>& reflectance) {
-        return rec709_from_xyz(glm::vec3(integrate_xyz([&](float w) { return reflectance(w) * illuminant_d65(w); })));
+glm::vec3 reflectance_rgb(const SpectralFunction& spectrum, std::span<const float> nodes) {
+    const auto rgb_under_d65 = [](const SpectralFunction& reflectance, std::span<const float> bends) {
+        const auto reflected = [&](float w) { return reflectance(w) * illuminant_d65(w); };
+        return rec709_from_xyz(glm::vec3(integrate_xyz(reflected, bends)));
     };
     // Divided by white's own colour, because the table's D65 and Rec.709's white differ in the fourth digit.
-    static const glm::vec3 white = rgb_under_d65([](float) { return 1.0f; });
-    return rgb_under_d65(spectrum) / white;
+    static const glm::vec3 white = rgb_under_d65([](float) { return 1.0f; }, {});
+    return rgb_under_d65(spectrum, nodes) / white;
 }
 
 glm::vec3 rec709_from(std::string_view color_space, glm::vec3 rgb, SpectrumUse use) {

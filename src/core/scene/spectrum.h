@@ -13,6 +13,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,16 +35,23 @@ struct SampledSpectrum {
 };
 
 inline constexpr float kFirstWavelength = 360.0f, kLastWavelength = 830.0f;
+// The last one that the tabulated observer sees.
+inline constexpr float kLastSeen = 780.0f;
 
 // CIE 1931 2-degree colour-matching functions and the standard illuminant D65, at a wavelength in nm.
 glm::vec3 cie_xyz(float wavelength);
 float illuminant_d65(float wavelength);
 glm::vec3 rec709_from_xyz(glm::vec3 xyz);
-// Planck's law, relative: 1 at its maximum, as pbrt-v4 normalizes "blackbody".
+// Planck's law for a temperature above 0, relative: 1 at its maximum, as pbrt-v4 normalizes "blackbody".
 float blackbody(float wavelength, float kelvin);
-// Linear Rec.709 of a function of the wavelength: as emission, with luminance one; as a reflectance under D65.
-glm::vec3 light_rgb(const std::function<float(float)>& spectrum);
-glm::vec3 reflectance_rgb(const std::function<float(float)>& spectrum);
+// The same, 1 at the maximum of what is seen, and 0 beyond: a float's range is enough for any temperature.
+float visible_blackbody(float wavelength, float kelvin);
+// A function of the wavelength (nm).
+using SpectralFunction = std::function<float(float)>;
+// Linear Rec.709: as emission, with luminance one, or black if nothing of it is seen; as a reflectance under D65. `nodes` (rising,
+// nm): where it bends.
+glm::vec3 light_rgb(const SpectralFunction& spectrum, std::span<const float> nodes = {});
+glm::vec3 reflectance_rgb(const SpectralFunction& spectrum, std::span<const float> nodes = {});
 // Linear Rec.709 of an rgb in one of pbrt-v4's colour spaces. Reflectances are adapted from white to white, lights keep
 // their chromaticity.
 glm::vec3 rec709_from(std::string_view color_space, glm::vec3 rgb, SpectrumUse use);
@@ -60,8 +68,8 @@ struct ConductorRgb {
 ConductorRgb conductor_rgb(const SampledSpectrum& eta, const SampledSpectrum& k);
 
 // A parameter of type blackbody, spectrum or float as a sampled spectrum; empty for rgb. Errors (unknown name, unreadable file,
-// unordered wavelengths) are reported.
-std::optional<SampledSpectrum> sampled_spectrum(const Parameter& parameter, const SceneFolder& folder,
+// unordered wavelengths) are reported; negative values become 0, with a warning.
+std::optional<SampledSpectrum> sampled_spectrum(const Parameter& parameter, SpectrumUse use, const SceneFolder& folder,
                                                 Diagnostics& diagnostics);
 // Any spectrum parameter as linear Rec.709; empty, with the error reported, if it is wrong.
 std::optional<glm::vec3> spectrum_rgb(const Parameter& parameter, SpectrumUse use, const SceneFolder& folder,

@@ -92,13 +92,13 @@ std::optional<glm::vec3> rgb_value(const Parameter& parameter, SpectrumUse use, 
 // A scene repeats few spectra many times.
 constexpr size_t kRemembered = 256;
 
-SampledSpectrum blackbody_spectrum(float kelvin) {
-    static Memo<float, SampledSpectrum> memo(kRemembered);
-    return memo.get(kelvin, [&] {
+SampledSpectrum blackbody_spectrum(float kelvin, float (*planck)(float wavelength, float kelvin)) {
+    static Memo<std::pair<float, bool>, SampledSpectrum> memo(kRemembered);
+    return memo.get({kelvin, planck == blackbody}, [&] {
         SampledSpectrum spectrum;
         for (float w = kFirstWavelength; w <= kLastWavelength; w += 5.0f) {
             spectrum.wavelengths.push_back(w);
-            spectrum.values.push_back(blackbody(w, kelvin));
+            spectrum.values.push_back(planck(w, kelvin));
         }
         return spectrum;
     });
@@ -108,22 +108,23 @@ glm::vec3 rgb_of_spectrum(const SampledSpectrum& spectrum, bool light) {
     static Memo<std::string, glm::vec3> memo(kRemembered);
     const auto at = [&](float wavelength) { return spectrum.at(wavelength); };
     // Colours are at most slightly outside of Rec.709's gamut; negative components become zero.
-    return memo.get((light ? 'l' : 'r') + spectrum.bytes(),
-                    [&] { return glm::max(light ? light_rgb(at) : reflectance_rgb(at), glm::vec3(0.0f)); });
+    return memo.get((light ? 'l' : 'r') + spectrum.bytes(), [&] {
+        const glm::vec3 rgb = light ? light_rgb(at, spectrum.wavelengths) : reflectance_rgb(at, spectrum.wavelengths);
+        return glm::max(rgb, glm::vec3(0.0f));
+    });
 }
 
-}  // namespace
-
-std::optional<SampledSpectrum> sampled_spectrum(const Parameter& parameter, const SceneFolder& folder,
-                                                Diagnostics& diagnostics) {
+std::optional<SampledSpectrum> given_spectrum(const Parameter& parameter, SpectrumUse use, const SceneFolder& folder,
+                                              Diagnostics& diagnostics) {
     const Location where = place_of(parameter);
     if (const auto* numbers = std::get_if<std::vector<float>>(&parameter.values)) {
         if (parameter.type == ParameterType::kBlackbody) {
-            if (numbers->size() != 1 || !((*numbers)[0] > 0.0f)) {
+            if (numbers->size() != 1 || !((*numbers)[0] > 0.0f) || !std::isfinite((*numbers)[0])) {
                 diagnostics.error(where, fmt::format("\"{}\" must be one temperature above 0 K", parameter.name));
                 return {};
             }
-            return blackbody_spectrum((*numbers)[0]);
+            // A light is scaled to a luminance of one: all that counts is what is seen of it.
+            return blackbody_spectrum((*numbers)[0], use == SpectrumUse::kLight ? visible_blackbody : blackbody);
         }
         return from_pairs(*numbers, where, fmt::format("spectrum \"{}\"", parameter.name), diagnostics);
     }
@@ -145,16 +146,11 @@ std::optional<SampledSpectrum> sampled_spectrum(const Parameter& parameter, cons
     return {};
 }
 
-std::optional<glm::vec3> spectrum_rgb(const Parameter& parameter, SpectrumUse use, const SceneFolder& folder,
-                                      Diagnostics& diagnostics) {
-    if (parameter.type == ParameterType::kRgb) return rgb_value(parameter, use, diagnostics);
-    if (parameter.type != ParameterType::kSpectrum && parameter.type != ParameterType::kBlackbody) {
-        diagnostics.error(parameter.location,
-                          fmt::format("\"{}\" is of type {}", parameter.name, type_name(parameter.type)),
-                          "rgb, blackbody or spectrum");
-        return {};
-    }
-    std::optional<SampledSpectrum> spectrum = sampled_spectrum(parameter, folder, diagnostics);
+}  // namespace
+
+std::optional<SampledSpectrum> sampled_spectrum(const Parameter& parameter, SpectrumUse use, const SceneFolder& folder,
+                                                Diagnostics& diagnostics) {
+    std::optional<SampledSpectrum> spectrum = given_spectrum(parameter, use, folder, diagnostics);
     if (!spectrum) return {};
     const auto negative =
         std::count_if(spectrum->values.begin(), spectrum->values.end(), [](float v) { return v < 0.0f; });
@@ -164,7 +160,26 @@ std::optional<glm::vec3> spectrum_rgb(const Parameter& parameter, SpectrumUse us
                             "they are taken for 0");
         for (float& value : spectrum->values) value = std::max(value, 0.0f);
     }
+    return spectrum;
+}
+
+std::optional<glm::vec3> spectrum_rgb(const Parameter& parameter, SpectrumUse use, const SceneFolder& folder,
+                                      Diagnostics& diagnostics) {
+    if (parameter.type == ParameterType::kRgb) return rgb_value(parameter, use, diagnostics);
+    if (parameter.type != ParameterType::kSpectrum && parameter.type != ParameterType::kBlackbody) {
+        diagnostics.error(parameter.location,
+                          fmt::format("\"{}\" is of type {}", parameter.name, type_name(parameter.type)),
+                          "rgb, blackbody or spectrum");
+        return {};
+    }
+    const std::optional<SampledSpectrum> spectrum = sampled_spectrum(parameter, use, folder, diagnostics);
+    if (!spectrum) return {};
     const glm::vec3 rgb = rgb_of_spectrum(*spectrum, use == SpectrumUse::kLight);
+    const bool emits = std::any_of(spectrum->values.begin(), spectrum->values.end(), [](float v) { return v > 0.0f; });
+    if (use == SpectrumUse::kLight && emits && rgb == glm::vec3(0.0f))
+        diagnostics.warning(place_of(parameter),
+                            fmt::format("spectrum \"{}\" has no light that is seen", parameter.name),
+                            fmt::format("light from {:g} to {:g} nm is", kFirstWavelength, kLastSeen));
     return use == SpectrumUse::kAlbedo ? glm::min(rgb, glm::vec3(1.0f)) : rgb;
 }
 

@@ -91,12 +91,13 @@ float read_eta(MaterialContext& context, std::string_view name) {
     if (!parameter || parameter->type == ParameterType::kFloat) return context.reader.get_float(name);
     const float fallback = float(find_spec(context.reader.specs(), name)->number);
     float eta = fallback;
-    if (parameter->type == ParameterType::kRgb || parameter->type == ParameterType::kTexture) {
+    if (parameter->type != ParameterType::kSpectrum && parameter->type != ParameterType::kBlackbody) {
         context.reader.error(name, fmt::format("\"{}\" is of type {}", name, type_name(parameter->type)),
                              "float, or spectrum");
         return fallback;
     }
-    const auto spectrum = sampled_spectrum(*parameter, context.build.description.folder, context.build.diagnostics);
+    const auto spectrum = sampled_spectrum(*parameter, SpectrumUse::kUnbounded, context.build.description.folder,
+                                           context.build.diagnostics);
     if (!spectrum) return fallback;
     const auto [low, high] = std::minmax_element(spectrum->values.begin(), spectrum->values.end());
     eta = *low == *high ? *low : spectrum->at(kSodiumLine);
@@ -155,7 +156,8 @@ void read_conductor(MaterialContext& context, const std::string& prefix) {
         const Parameter* parameter = reader.find(name);
         if (!parameter) return *named_spectrum(absent);
         if (parameter->type != ParameterType::kSpectrum) return {};
-        const auto spectrum = sampled_spectrum(*parameter, context.build.description.folder, context.build.diagnostics);
+        const auto spectrum = sampled_spectrum(*parameter, SpectrumUse::kUnbounded, context.build.description.folder,
+                                               context.build.diagnostics);
         return spectrum ? *spectrum : *named_spectrum(absent);  // an error is reported already
     };
     const std::optional<SampledSpectrum> eta_spectrum = sampled(eta, "metal-Cu-eta"),
