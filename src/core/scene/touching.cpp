@@ -316,7 +316,7 @@ class Search {
     // The diagonal of a shape's box.
     double size_of(uint32_t geometry) {
         const auto [known, is_new] = boxes_.try_emplace(geometry, dvec3(1e300), dvec3(-1e300));
-        auto& [low, high] = known->second;
+        dvec3 &low = known->second.first, &high = known->second.second;
         const auto add = [&](const dvec3& p) { low = glm::min(low, p), high = glm::max(high, p); };
         const kernel::GeometryRecord& g = scene_.geometries[geometry];
         for (uint32_t i = 0; is_new && i < plane_triangle_count(g); ++i)
