@@ -230,15 +230,22 @@ TEST(Connect, SplatsFollowThePixelFilter) {
     }
 }
 
-TEST(Connect, SumsOfSplatsLoseNothing) {
-    constexpr size_t kSplats = 300'000, kPixels = 3;
-    constexpr float kQuantum = 0x1p-20f;
+// body(probe, scene) with an empty scene that has a camera.
+template <typename Body>
+void on_every_backend(const Body& body) {
     for (const std::string& backend : kernel_backends()) {
         SCOPED_TRACE(backend);
         Probe probe(backend);
         TestScene scene;
         set_camera(scene.scene, cameras()[0]);
-        const Scene& finished = scene.finish();
+        body(probe, scene.finish());
+    }
+}
+
+TEST(Connect, SumsOfSplatsLoseNothing) {
+    constexpr size_t kSplats = 300'000, kPixels = 3;
+    constexpr float kQuantum = 0x1p-20f;
+    on_every_backend([&](Probe& probe, const Scene& finished) {
         std::mt19937 random(3);
         std::normal_distribution<float> normal;
         std::vector<vec4> inputs;
@@ -269,17 +276,12 @@ TEST(Connect, SumsOfSplatsLoseNothing) {
             }
         }
         EXPECT_NEAR(found[1].x, 1e5 * 1e-4 * kQuantum, 6 * std::sqrt(10.0) * kQuantum);  // 10 +- 3 quanta, not 0
-    }
+    });
 }
 
 // Numbers of 128 bits: each pair cancels but for the last number, whatever is carried or borrowed on the way.
 TEST(Connect, SumsOfSplatsCarryThroughAllWords) {
-    for (const std::string& backend : kernel_backends()) {
-        SCOPED_TRACE(backend);
-        Probe probe(backend);
-        TestScene scene;
-        set_camera(scene.scene, cameras()[0]);
-        const Scene& finished = scene.finish();
+    on_every_backend([&](Probe& probe, const Scene& finished) {
         std::vector<vec4> inputs;
         std::vector<glm::dvec3> expected;
         // The sums are given: doubles have too few digits for them.
@@ -308,16 +310,11 @@ TEST(Connect, SumsOfSplatsCarryThroughAllWords) {
             for (int c = 0; c < 3; ++c)
                 EXPECT_NEAR(found[i][c], expected[i][c], std::abs(expected[i][c]) * 0x1p-22) << i << " " << c;
         }
-    }
+    });
 }
 
 TEST(Connect, SplatsBeyondTheSumsAreCounted) {
-    for (const std::string& backend : kernel_backends()) {
-        SCOPED_TRACE(backend);
-        Probe probe(backend);
-        TestScene scene;
-        set_camera(scene.scene, cameras()[0]);
-        const Scene& finished = scene.finish();
+    on_every_backend([&](Probe& probe, const Scene& finished) {
         probe.clear_splats(1);
         const float inf = std::numeric_limits<float>::infinity();
         std::vector<vec4> inputs;
@@ -330,7 +327,7 @@ TEST(Connect, SplatsBeyondTheSumsAreCounted) {
         EXPECT_NEAR(found.x, 1, 2e-6);
         EXPECT_NEAR(found.z, 3, 2e-6);
         EXPECT_EQ(found.w, 3.0f);
-    }
+    });
 }
 
 }  // namespace
