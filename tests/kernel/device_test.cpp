@@ -3,6 +3,7 @@
 #include "core/base/error.h"
 #include "core/device/device.h"
 #include "core/device/kernel_types.h"
+#include "support/backends.h"
 #include "support/temporary_folder.h"
 
 #include <gtest/gtest.h>
@@ -16,14 +17,7 @@
 namespace lampyris {
 namespace {
 
-// The backends that this machine has devices for.
-std::vector<std::string> usable_backends() {
-    std::vector<std::string> names;
-    for (const DeviceInfo& info : list_devices()) {
-        if (std::find(names.begin(), names.end(), info.backend) == names.end()) names.push_back(info.backend);
-    }
-    return names;
-}
+using test::usable_backends;
 
 DeviceOptions with(std::map<std::string, std::string> settings) {
     DeviceOptions options;

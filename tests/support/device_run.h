@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/device/device.h"
+#include "support/backends.h"
 
 #include <algorithm>
 #include <memory>
@@ -9,21 +10,6 @@
 #include <vector>
 
 namespace lampyris::test {
-
-// The backends that this machine has devices for.
-inline std::vector<std::string> usable_backends() {
-    std::vector<std::string> names;
-    for (const DeviceInfo& info : list_devices())
-        if (std::find(names.begin(), names.end(), info.backend) == names.end()) names.push_back(info.backend);
-    return names;
-}
-
-// Of these, one for each build of kernels that trace no rays: those of cpu-bvh2 are the CPU's.
-inline std::vector<std::string> kernel_backends() {
-    std::vector<std::string> names = usable_backends();
-    std::erase(names, "cpu-bvh2");
-    return names;
-}
 
 // For tests that require the CPU's bits: by default, a GPU's divisions are less accurate.
 inline DeviceOptions exact_options(const std::string& backend) {

@@ -107,18 +107,6 @@ Rendered render_file(const std::string& path, const RenderSettings& settings) {
     return std::move(render_seeds(SceneSource::of_file(path), settings)[0]);
 }
 
-std::vector<std::string> usable_backends() {
-    std::vector<std::string> names;
-    for (const std::string& name : backend_names()) {
-        for (const DeviceInfo& device : list_devices()) {
-            if (device.backend != name) continue;
-            names.push_back(name);
-            break;
-        }
-    }
-    return names;
-}
-
 std::string failure_directory() {
     const std::string directory = std::string(LAMPYRIS_BINARY_DIR) + "/failures";
     std::filesystem::create_directories(directory);

@@ -3,6 +3,7 @@
 
 #include "core/photons/photon_map.h"
 #include "core/render/render.h"
+#include "support/backends.h"
 
 #include <cstdint>
 #include <functional>
@@ -50,9 +51,6 @@ Rendered render_text(const std::string& scene_text, const RenderSettings& settin
 // With `count` consecutive seeds, beginning with the settings', one image each; the scene is built once.
 std::vector<Rendered> render_text_seeds(const std::string& scene_text, const RenderSettings& settings, uint32_t seeds);
 Rendered render_file(const std::string& path, const RenderSettings& settings);
-
-// Backends to test on: all with a device on this machine.
-std::vector<std::string> usable_backends();
 
 // The folder where a failing test saves its images; it exists.
 std::string failure_directory();
