@@ -354,11 +354,14 @@ Measured measure_case(const HardCase& hard, const std::string& integrator, const
     settings.samples = hard.samples;
     settings.integrator = integrator + ":" + hard.settings;
     if (!hard.photon_map.empty()) settings.photon_map = hard.photon_map;
-    // A pass of mlt is eight mutations a pixel, and a bootstrap.
-    if (integrator == "mlt") settings.samples = std::clamp(hard.samples / 2, 8u, 64u);
-    // mlt has no roulette, and its paths one number per dimension.
-    const size_t roulette = settings.integrator.find(",rrdepth");
-    if (integrator == "mlt" && roulette != std::string::npos) settings.integrator.resize(roulette);
+    if (integrator == "mlt") {
+        // A pass is eight mutations a pixel, and a bootstrap, whose default is for larger films.
+        settings.samples = std::clamp(hard.samples / 2, 8u, 64u);
+        // There is no roulette, and a path has one number per dimension.
+        const size_t roulette = settings.integrator.find(",rrdepth");
+        if (roulette != std::string::npos) settings.integrator.resize(roulette);
+        settings.integrator += ",bootstrapsamples=8192";
+    }
     settings.share_device = true;
     Measured measured{0, 0, 0};
     std::vector<double> means;
