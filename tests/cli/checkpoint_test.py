@@ -14,7 +14,7 @@ SPPM = ["--integrator", "sppm:photonsperiteration=20000", "--resolution", "96x64
 FAMILIES = {
     "path": [*PATH, "--passes", "1500"],
     "sppm": [*SPPM, "--passes", "150"],
-    "vcm": ["--integrator", "vcm", "--resolution", "64x48", "--photon-map", "stochastic_hash", "--passes", "150"],
+    "vcm": ["--integrator", "vcm", "--resolution", "64x48", "--photon-map", "stochastic_hash", "--passes", "500"],
     "mlt": ["--integrator", "mlt", "--resolution", "64x48", "--passes", "120"],
 }
 
