@@ -1,7 +1,7 @@
 // Scenes of so many lights that they are chosen by a tree (core/kernel/light_tree.h): every method finds the same light. Methods
 // that start from lights choose them by power, and weigh both choices against each other.
 //
-// False alarms: 1e-6 a comparison, 4 of them; fixed seeds.
+// False alarms: 1e-6 a comparison, 6 of them; fixed seeds.
 #include "support/agreement.h"
 #include "support/device_run.h"
 #include "support/runs.h"
@@ -58,6 +58,29 @@ TEST(ManyLights, AllMethodsFindTheSame) {
         // Student's t with about 30 degrees of freedom exceeds 6.1 with a probability of 1e-6.
         EXPECT_LT(std::abs(other.value() - path.value()), 6.1 * std::hypot(other.error(), path.error()));
         EXPECT_LT(other.error(), 0.01 * path.value());
+    }
+}
+
+// The weights of light samples and of paths from lights add up to one only if both know by which probability the other chose. A
+// light near the floor that is seen is chosen often by the tree and seldom by power: it has a 450th of all power.
+TEST(ManyLights, ChoicesOfBothKindsAreWeighed) {
+    constexpr uint32_t kRuns = 16;
+    std::string text =
+        "LookAt 0 -.5 1.5  0 0 0  0 0 1\nCamera \"perspective\" \"float fov\" 60\nFilm \"rgb\" \"integer "
+        "xresolution\" 8 \"integer yresolution\" 8\nPixelFilter \"box\"\nSampler \"independent\"\nWorldBegin\n"
+        "Material \"diffuse\" \"rgb reflectance\" [ .5 .5 .5 ]\n"
+        "Shape \"trianglemesh\" \"point3 P\" [ -200 -200 0 200 -200 0 200 200 0 -200 200 0 ] \"integer indices\" "
+        "[ 0 1 2 0 2 3 ]\n";
+    for (int i = 0; i < 16; ++i)
+        text += fmt::format("LightSource \"point\" \"point3 from\" [ {} 0 1 ] \"rgb I\" [ {} 0 0 ]\n", 6 * i,
+                            i == 0 ? 1 : 30);
+    const Mean path = mean_of_text_runs(text, settings_of("cpu", "path:maxdepth=2", 512, 0), kRuns);
+    for (const char* integrator : {"bdpt:maxdepth=2", "vcm:maxdepth=2,radius=0.01"}) {
+        SCOPED_TRACE(integrator);
+        const Mean other = mean_of_text_runs(text, settings_of("cpu", integrator, 512, 0), kRuns);
+        const double error = std::hypot(other.error(), path.error());
+        EXPECT_LT(std::abs(other.value() - path.value()), 6.1 * error);
+        EXPECT_LT(error, 0.003 * path.value());
     }
 }
 
