@@ -24,7 +24,8 @@ LAYERS = {
         "core/scene",
         "core/render",
     },
-    "backends/cpu": {"core/base", "core/kernel", "core/device", "core/scene", "accel/rays"},
+    "backends/cpu": {"core/base", "core/kernel", "core/device", "core/scene", "accel/rays", "backends/vectors"},
+    "backends/vectors": {"core/base", "core/kernel", "core/device", "accel/rays", "backends/vulkan"},
     "backends/vulkan": {"core/base", "core/kernel", "core/device", "core/scene", "accel/rays"},
 }
 # Written by the build, below a folder of their own.

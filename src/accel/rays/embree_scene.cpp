@@ -159,6 +159,33 @@ bool EmbreeScene::occluded(void* self, const float origin[3], const float direct
     return ray.tfar < 0.0f;
 }
 
+#ifdef LAMPYRIS_VECTORS
+const EmbreeScene* EmbreeScene::of_packets(const CpuTracer& tracer) {
+    if (tracer.closest != &EmbreeScene::closest) return nullptr;
+    const EmbreeScene* scene = static_cast<const EmbreeScene*>(tracer.scene);
+    return scene->user_geometries_.empty() ? scene : nullptr;
+}
+
+void EmbreeScene::closest8(const int32_t* valid, RTCRayHit8& rays) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect8(valid, top_.get(), &context, &rays);
+    if (scene_.instances.size() < 2) return;
+    for (uint32_t l = 0; l < 8; ++l) {
+        uint32_t& instance = rays.hit.instID[0][l];
+        if (instance == RTC_INVALID_GEOMETRY_ID || rays.hit.geomID[l] == RTC_INVALID_GEOMETRY_ID) continue;
+        instance -= uint32_t(scene_.geometries.size());
+        rays.hit.geomID[l] += scene_.sets[scene_.instance_sets[instance]].first_geometry;
+    }
+}
+
+void EmbreeScene::occluded8(const int32_t* valid, RTCRay8& rays) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded8(valid, top_.get(), &context, &rays);
+}
+#endif
+
 void EmbreeScene::user_bounds(const RTCBoundsFunctionArguments* arguments) {
     const UserGeometry& geometry = *static_cast<const UserGeometry*>(arguments->geometryUserPtr);
     const PrimitiveBounds bounds = primitive_bounds(geometry.owner->scene_, geometry.geometry, arguments->primID);

@@ -46,6 +46,14 @@ class EmbreeScene {
     CpuTracer tracer();
     size_t memory_bytes() const { return memory_; }
     RTCScene top_scene() const { return top_.get(); }
+#ifdef LAMPYRIS_VECTORS
+    // Packets of eight rays, for vector kernels. Null where the scene has surfaces that are tested one ray at a time.
+    static const EmbreeScene* of_packets(const CpuTracer& tracer);
+    float largest_ray() const { return largest_ray_; }
+    // A hit's instance and geometry are those of the scene.
+    void closest8(const int32_t* valid, RTCRayHit8& rays) const;
+    void occluded8(const int32_t* valid, RTCRay8& rays) const;
+#endif
 
  private:
     EmbreeSceneHandle new_scene(bool watertight) const;

@@ -5,6 +5,10 @@
 #include "core/device/device.h"
 #include "core/device/device_choice.h"
 #include "core/device/kernel_registry.h"
+#ifdef LAMPYRIS_VECTORS
+#include "backends/vectors/spirv_program.h"
+#include "backends/vectors/vector_kernel.h"
+#endif
 
 #include <embree3/rtcore_config.h>
 #include <fmt/format.h>
@@ -91,6 +95,9 @@ class CpuKernel final : public Kernel {
  public:
     CpuKernel(std::string_view file, CpuKernelFunction run) : Kernel(file), run_(run) {}
     CpuKernelFunction run_;
+#ifdef LAMPYRIS_VECTORS
+    std::shared_ptr<const vectors::VectorKernel> vectors_;  // in place of run_, if there is one
+#endif
 };
 
 std::string processor_name() {
@@ -105,7 +112,12 @@ class CpuDevice final : public Device {
     CpuDevice(CpuTracerKind tracer, const DeviceOptions& options)
         : tracer_(tracer), meter_(std::make_shared<MemoryMeter>()) {
         if (tracer == CpuTracerKind::embree) {
+#ifdef LAMPYRIS_VECTORS
+            check_settings(backend(), options, {"watertight", "vectors"});
+            vectors_ = read_switch(options, "vectors", Switch::off);
+#else
             check_settings(backend(), options, {"watertight"});
+#endif
             watertight_ = read_switch(options, "watertight", Switch::on) != Switch::off;
         } else {
             check_settings(backend(), options, {});
@@ -140,6 +152,9 @@ class CpuDevice final : public Device {
     }
 
     KernelHandle compile(std::string_view file, uint64_t effects) override {
+#ifdef LAMPYRIS_VECTORS
+        if (vectors_ != Switch::off) return compile_in_vectors(file, effects);
+#endif
         return std::make_shared<CpuKernel>(file, find_cpu_kernel(file, effects));
     }
 
@@ -175,6 +190,9 @@ class CpuDevice final : public Device {
                     CpuInvocation part = call;
                     part.begin = uint32_t(range.begin());
                     part.end = uint32_t(range.end());
+#ifdef LAMPYRIS_VECTORS
+                    if (cpu_kernel.vectors_) return cpu_kernel.vectors_->run(part);
+#endif
                     cpu_kernel.run_(part);
                 },
                 tbb::simple_partitioner{});
@@ -196,6 +214,21 @@ class CpuDevice final : public Device {
  private:
     CpuTracerKind tracer_;
     bool watertight_ = true;
+#ifdef LAMPYRIS_VECTORS
+    // On: a kernel that cannot be translated is an error. Automatic: it runs its scalar build.
+    Switch vectors_ = Switch::off;
+
+    KernelHandle compile_in_vectors(std::string_view file, uint64_t effects) const {
+        auto kernel = std::make_shared<CpuKernel>(file, find_cpu_kernel(file, effects));
+        try {
+            kernel->vectors_ = vectors::compile_vector_kernel(file, effects);
+        } catch (const vectors::NotTranslated& reason) {
+            if (vectors_ == Switch::on)
+                throw MachineError(fmt::format("error: kernel {} cannot run in vectors: {}", file, reason.what()));
+        }
+        return kernel;
+    }
+#endif
     std::shared_ptr<MemoryMeter> meter_;
     unsigned threads_ = 1;
     std::optional<oneapi::tbb::global_control> more_threads_;
