@@ -165,6 +165,7 @@ void Translator::open_block(uint32_t i) {
         b_.SetInsertPoint(bodies_[0]);
     }
     execs_[i] = exec_;
+    active_lane_ = nullptr;
     for (const Instruction& phi : flow_.block(i).phis) {
         std::vector<Value*> scalars;
         for (llvm::AllocaInst* a : phis_.at(phi.result)) scalars.push_back(b_.CreateLoad(a->getAllocatedType(), a));

@@ -7,16 +7,16 @@
 namespace lampyris::vectors {
 namespace {
 
-// An index as another one of the block plus a constant. (Not less one: a lane that is not here reads element 0.)
+// An index as another one of the block plus a constant.
 std::pair<uint32_t, int64_t> without_constants(uint32_t id, const Program& program,
                                                const std::unordered_map<uint32_t, const Instruction*>& here) {
     const auto found = here.find(id);
     if (found == here.end() || found->second->op != spv::OpIAdd) return {id, 0};
     for (size_t side = 0; side < 2; ++side) {
         const uint32_t number = found->second->operands[side];
-        if (!program.is_number(number) || program.constant_u32(number) > 1024u) continue;
+        if (!program.is_number(number)) continue;
         const auto [base, more] = without_constants(found->second->operands[1 - side], program, here);
-        return {base, more + program.constant_u32(number)};
+        return {base, more + int32_t(program.constant_u32(number))};
     }
     return {id, 0};
 }

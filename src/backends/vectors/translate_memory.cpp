@@ -1,6 +1,8 @@
 // Memory: pointers, stores, atomic operations and local variables.
 #include "backends/vectors/translator.h"
 
+#include <llvm/IR/IntrinsicsX86.h>
+
 namespace lampyris::vectors {
 
 uint32_t Translator::words_before(uint32_t type, uint32_t scalar) const {
@@ -58,6 +60,15 @@ bool Translator::differs(const Pointer& pointer) {
     return false;
 }
 
+Value* Translator::active_lane() {
+    if (!active_lane_) {
+        Value* signs = b_.CreateIntrinsic(llvm::Intrinsic::x86_avx_movmsk_ps_256, {},
+                                          {b_.CreateBitCast(exec_, wide(b_.getFloatTy()))});
+        active_lane_ = splat(b_.CreateBinaryIntrinsic(llvm::Intrinsic::cttz, signs, b_.getTrue()));
+    }
+    return active_lane_;
+}
+
 Value* Translator::address(const Pointer& pointer) {
     Value* offset = b_.getInt64(pointer.bytes);
     for (const Pointer::Step& step : pointer.steps) {
@@ -68,13 +79,14 @@ Value* Translator::address(const Pointer& pointer) {
     return b_.CreateGEP(b_.getInt8Ty(), base(pointer.variable), offset);
 }
 
-// A lane that is not here has any index: it gets element 0, which every buffer has.
+// A lane that is not here may have any index: it gets that of one that is.
 std::vector<Value*> Translator::addresses(const Pointer& pointer) {
     std::vector<Value*> result(kLanes, address(pointer));
     for (const Pointer::Step& step : pointer.steps) {
         Value* index = get(step.index).of[0];
         if (!index->getType()->isVectorTy()) continue;
-        index = choose(exec_, index, llvm::Constant::getNullValue(index->getType()));
+        Value* of_active = b_.CreateIntrinsic(llvm::Intrinsic::x86_avx2_permd, {}, {index, active_lane()});
+        index = choose(exec_, index, of_active);
         for (uint32_t l = 0; l < kLanes; ++l) {
             Value* element = b_.CreateZExt(b_.CreateExtractElement(index, l), b_.getInt64Ty());
             result[l] = b_.CreateGEP(b_.getInt8Ty(), result[l],

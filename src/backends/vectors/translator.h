@@ -97,6 +97,7 @@ class Translator {
     Value* base(uint32_t variable) { return bases_.at(variable); }
     Value* at(Value* address, uint64_t bytes) { return b_.CreateConstGEP1_64(b_.getInt8Ty(), address, bytes); }
     bool differs(const Pointer& pointer);
+    Value* active_lane();                                   // the first one that is here
     Value* address(const Pointer& pointer);                 // the same for all lanes
     std::vector<Value*> addresses(const Pointer& pointer);  // of each lane
     Value* from_lanes(const std::vector<Value*>& lanes);
@@ -132,6 +133,7 @@ class Translator {
 
     uint32_t place_ = 0;     // of the block that is translated
     Value* exec_ = nullptr;  // its lanes
+    Value* active_lane_ = nullptr;
     // By place: where lanes are counted, and where the block begins.
     std::vector<llvm::BasicBlock*> checks_, bodies_;
     std::vector<llvm::AllocaInst*> masks_;  // lanes that have come to the block
