@@ -42,6 +42,7 @@ void ControlFlow::find_order() {
         post.push_back(at);
     };
     visit(0);
+    // What follows a construct may be reached by nothing.
     std::vector<bool> reached(program.blocks.size());
     const std::function<void(uint32_t)> reach = [&](uint32_t at) {
         if (reached[at]) return;
@@ -91,10 +92,7 @@ void ControlFlow::find_dominators() {
                 if (found != idom[i]) idom[i] = found, changed = true;
             }
         }
-        for (uint32_t i = 0; i < count; ++i) {
-            if (idom[i] == ~0u) idom[i] = 0;  // a merge block that nothing reaches
-            places[i].dominator = idom[i];
-        }
+        for (uint32_t i = 0; i < count; ++i) places[i].dominator = idom[i];
         if (round == 0) {
             std::vector<std::vector<uint32_t>> children(count);
             for (uint32_t i = 1; i < count; ++i) children[idom[i]].push_back(i);

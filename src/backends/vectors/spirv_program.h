@@ -54,7 +54,6 @@ struct Program {
     std::vector<Block> blocks;                       // of main; the first is its entry
 
     const Type& type(uint32_t id) const { return types.at(id); }
-    const Type& type_of_value(uint32_t id) const { return types.at(type_of.at(id)); }
     // Scalars of a value, and the type of each.
     uint32_t scalars(uint32_t type) const;
     uint32_t scalar_type(uint32_t type, uint32_t index) const;

@@ -61,11 +61,8 @@ bool Translator::differs(const Pointer& pointer) {
 }
 
 Value* Translator::active_lane() {
-    if (!active_lane_) {
-        Value* signs = b_.CreateIntrinsic(llvm::Intrinsic::x86_avx_movmsk_ps_256, {},
-                                          {b_.CreateBitCast(exec_, wide(b_.getFloatTy()))});
-        active_lane_ = splat(b_.CreateBinaryIntrinsic(llvm::Intrinsic::cttz, signs, b_.getTrue()));
-    }
+    if (!active_lane_)
+        active_lane_ = splat(b_.CreateBinaryIntrinsic(llvm::Intrinsic::cttz, signs(exec_), b_.getTrue()));
     return active_lane_;
 }
 

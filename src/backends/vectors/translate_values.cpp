@@ -43,10 +43,9 @@ Value* Translator::choose(Value* mask, Value* yes, Value* no) {
     return b_.CreateBitCast(chosen, yes->getType());
 }
 
-Value* Translator::any(Value* mask) {
-    Value* signs =
-        b_.CreateIntrinsic(llvm::Intrinsic::x86_avx_movmsk_ps_256, {}, {b_.CreateBitCast(mask, wide(b_.getFloatTy()))});
-    return b_.CreateICmpNE(signs, b_.getInt32(0));
+Value* Translator::signs(Value* mask) {
+    return b_.CreateIntrinsic(llvm::Intrinsic::x86_avx_movmsk_ps_256, {},
+                              {b_.CreateBitCast(mask, wide(b_.getFloatTy()))});
 }
 
 Scalars Translator::constant(uint32_t id) {

@@ -50,7 +50,8 @@ class Translator {
     Value* splat(Value* v);
     Value* as_mask(Value* compared);
     Value* choose(Value* mask, Value* yes, Value* no);
-    Value* any(Value* mask);
+    Value* signs(Value* mask);  // a bit of each lane, in one word
+    Value* any(Value* mask) { return b_.CreateICmpNE(signs(mask), b_.getInt32(0)); }
     Value* number(float x) { return llvm::ConstantFP::get(b_.getFloatTy(), x); }
     Scalars constant(uint32_t id);
     Scalars get(uint32_t id) { return get_at(id, place_); }
@@ -97,7 +98,7 @@ class Translator {
     Value* base(uint32_t variable) { return bases_.at(variable); }
     Value* at(Value* address, uint64_t bytes) { return b_.CreateConstGEP1_64(b_.getInt8Ty(), address, bytes); }
     bool differs(const Pointer& pointer);
-    Value* active_lane();                                   // the first one that is here
+    Value* active_lane();                                   // the number of the first one that is here, in all lanes
     Value* address(const Pointer& pointer);                 // the same for all lanes
     std::vector<Value*> addresses(const Pointer& pointer);  // of each lane
     Value* from_lanes(const std::vector<Value*>& lanes);
@@ -146,9 +147,9 @@ class Translator {
     std::unordered_map<uint32_t, Value*> bases_;             // of buffers and local variables
     std::unordered_map<uint32_t, std::set<uint32_t>> used_;  // scalars of a value
     std::set<uint32_t> written_;                             // buffers
-    std::unordered_map<uint32_t, std::vector<Value*>>
-        hits_;  // of a ray query: whether there is one, instance, geometry, primitive
-    std::unordered_map<uint32_t, uint32_t> traced_at_;  // the place where a ray query begins
+    // Of the last ray of a ray query: whether it hits, instance, geometry, primitive; and the place where it begins.
+    std::unordered_map<uint32_t, std::vector<Value*>> hits_;
+    std::unordered_map<uint32_t, uint32_t> traced_at_;
 
     // Loads of the block from the same element of a buffer, or from elements a constant apart, are made together.
     struct Load {
