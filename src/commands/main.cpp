@@ -2,10 +2,12 @@
 #include "commands/command.h"
 #include "commands/console.h"
 #include "commands/foreign_words.h"
+#include "core/base/background.h"
 #include "core/base/error.h"
 #include "core/base/version.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -97,16 +99,13 @@ int report(const std::string& message, ExitCode code) {
     return int(code);
 }
 
+constexpr double kWaitForBackground = 1.0;  // seconds
+
 std::string unexpected(const std::exception& error) {
     return fmt::format("lampyris: error: {} (this should not have happened: please report it)", error.what());
 }
 
-}  // namespace
-}  // namespace lampyris
-
-int main(int argc, char** argv) {
-    using namespace lampyris;
-    prepare_console();
+int run_and_report(int argc, char** argv) {
     try {
         return run_command_line(argc, argv);
     } catch (const Error& error) {
@@ -121,4 +120,17 @@ int main(int argc, char** argv) {
     } catch (const std::exception& error) {
         return report(unexpected(error), ExitCode::kMachineCannot);
     }
+}
+
+}  // namespace
+}  // namespace lampyris
+
+int main(int argc, char** argv) {
+    using namespace lampyris;
+    prepare_console();
+    const int code = run_and_report(argc, argv);
+    // A kernel that is being compiled in the background is for the next run. Whoever interrupts this one does not wait for it.
+    if (background_ends_within(code == int(ExitCode::kInterrupted) ? 0.0 : kWaitForBackground)) return code;
+    std::fflush(nullptr);
+    _exit(code);
 }

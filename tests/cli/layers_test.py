@@ -24,12 +24,13 @@ LAYERS = {
         "core/scene",
         "core/render",
     },
-    "backends/cpu": {"core/base", "core/kernel", "core/device", "core/scene", "accel/rays", "backends/vectors"},
-    "backends/vectors": {"core/base", "core/kernel", "core/device", "accel/rays", "backends/vulkan"},
-    "backends/vulkan": {"core/base", "core/kernel", "core/device", "core/scene", "accel/rays"},
+    "backends/shaders": {"core/base", "core/device"},
+    "backends/cpu": {"core/base", "core/kernel", "core/device", "core/scene", "accel/rays"},
+    "backends/vectors": {"core/base", "core/device", "accel/rays", "backends/cpu", "backends/shaders"},
+    "backends/vulkan": {"core/base", "core/kernel", "core/device", "core/scene", "accel/rays", "backends/shaders"},
 }
 # Written by the build, below a folder of their own.
-GENERATED = {"core/plugin_abi.h"}
+GENERATED = {"core/plugin_abi.h", "backends/vectors/version.h"}
 INCLUDE = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
 
 

@@ -1,6 +1,6 @@
 // A file of the shader cache with any content is taken for no kernel, unless it is the one that was stored; and any words are searched
 // for bindings without harm.
-#include "backends/vulkan/shader_cache.h"
+#include "backends/shaders/shader_cache.h"
 
 #include <unistd.h>
 
@@ -10,7 +10,7 @@
 #include <fstream>
 #include <string>
 
-using namespace lampyris::vulkan;
+using namespace lampyris::shaders;
 
 namespace {
 

@@ -1,7 +1,7 @@
 // Buffers that a device cannot bind are accessed by their addresses: with a lower limit, small scenes access the film, the
 // scene and all copies of photons like this, and make the same image to the bit as with all buffers bound.
 #include "backends/vulkan/addresses.h"
-#include "backends/vulkan/shader_compiler.h"
+#include "backends/shaders/shader_compiler.h"
 #include "core/base/error.h"
 #include "support/photon_sets.h"
 #include "support/runs.h"
@@ -125,17 +125,17 @@ TEST(LargeBuffersCode, IsValid) {
         for (const char* file : {"integrators/path/path.radiance.h", "accel/photons/cuckoo/cuckoo_insert.kernel.h",
                                  "accel/photons/collect/collect.consumer.h+accel/photons/kd_tree/kd_tree.gather.h"}) {
             SCOPED_TRACE(file);
-            vulkan::ShaderOptions options;
+            shaders::ShaderOptions options;
             options.effects = kernel::kDiffuseEffects | kernel::EFFECT_TEXTURES | kernel::EFFECT_IMAGES;
             options.optimize = optimize;
             options.wide_reads = true;
-            const vulkan::Spirv spirv = vulkan::compile_shader(file, options, vulkan::ShaderCache({})).spirv;
-            std::vector<vulkan::ShaderBinding> bindings = vulkan::used_bindings(spirv);
+            const shaders::Spirv spirv = shaders::compile_shader(file, options, shaders::ShaderCache({})).spirv;
+            std::vector<shaders::ShaderBinding> bindings = shaders::used_bindings(spirv);
             std::erase_if(bindings, [](const auto& binding) { return binding.acceleration_structure; });
             ASSERT_FALSE(bindings.empty());
-            const vulkan::Spirv changed = vulkan::address_buffers(spirv, bindings);
+            const shaders::Spirv changed = vulkan::address_buffers(spirv, bindings);
             EXPECT_TRUE(tools.Validate(changed)) << said;
-            EXPECT_TRUE(vulkan::used_bindings(changed).empty()) << "a buffer is still bound";
+            EXPECT_TRUE(shaders::used_bindings(changed).empty()) << "a buffer is still bound";
         }
     }
 }

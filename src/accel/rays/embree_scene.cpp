@@ -35,6 +35,14 @@ __m128 load3(const float v[3]) {
     return _mm_movelh_ps(_mm_castpd_ps(_mm_load_sd(reinterpret_cast<const double*>(v))), _mm_load_ss(v + 2));
 }
 
+RTCRay ray_of(const RTCRay8& rays, uint32_t l) {
+    RTCRay ray;
+    ray.org_x = rays.org_x[l], ray.org_y = rays.org_y[l], ray.org_z = rays.org_z[l], ray.tnear = rays.tnear[l];
+    ray.dir_x = rays.dir_x[l], ray.dir_y = rays.dir_y[l], ray.dir_z = rays.dir_z[l], ray.time = rays.time[l];
+    ray.tfar = rays.tfar[l], ray.mask = rays.mask[l], ray.id = 0, ray.flags = rays.flags[l];
+    return ray;
+}
+
 }  // namespace
 
 EmbreeScene::EmbreeScene(const Scene& scene, void* const* scene_buffers, bool watertight)
@@ -128,6 +136,20 @@ EmbreeGeometry EmbreeScene::make_geometry(uint32_t index) {
     return geometry;
 }
 
+// Embree's hit as the scene's instance and geometry; false if there is none.
+bool EmbreeScene::scene_hit(const RTCHit& found, TraceHit& hit) const {
+    if (found.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+    hit.primitive = found.primID;
+    if (found.instID[0] == RTC_INVALID_GEOMETRY_ID) {
+        hit.instance = 0;
+        hit.geometry = found.geomID;
+    } else {
+        hit.instance = found.instID[0] - uint32_t(scene_.geometries.size());
+        hit.geometry = scene_.sets[scene_.instance_sets[hit.instance]].first_geometry + found.geomID;
+    }
+    return true;
+}
+
 bool EmbreeScene::closest(void* self, const float origin[3], const float direction[3], float t_max, TraceHit& hit) {
     const EmbreeScene& scene = *static_cast<const EmbreeScene*>(self);
     RTCRayHit ray;
@@ -137,16 +159,7 @@ bool EmbreeScene::closest(void* self, const float origin[3], const float directi
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     rtcIntersect1(scene.top_.get(), &context, &ray);
-    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-    hit.primitive = ray.hit.primID;
-    if (ray.hit.instID[0] == RTC_INVALID_GEOMETRY_ID) {
-        hit.instance = 0;
-        hit.geometry = ray.hit.geomID;
-    } else {
-        hit.instance = ray.hit.instID[0] - uint32_t(scene.scene_.geometries.size());
-        hit.geometry = scene.scene_.sets[scene.scene_.instance_sets[hit.instance]].first_geometry + ray.hit.geomID;
-    }
-    return true;
+    return scene.scene_hit(ray.hit, hit);
 }
 
 bool EmbreeScene::occluded(void* self, const float origin[3], const float direction[3], float t_max) {
@@ -159,32 +172,51 @@ bool EmbreeScene::occluded(void* self, const float origin[3], const float direct
     return ray.tfar < 0.0f;
 }
 
-#ifdef LAMPYRIS_VECTORS
-const EmbreeScene* EmbreeScene::of_packets(const CpuTracer& tracer) {
-    if (tracer.closest != &EmbreeScene::closest) return nullptr;
-    const EmbreeScene* scene = static_cast<const EmbreeScene*>(tracer.scene);
-    return scene->user_geometries_.empty() ? scene : nullptr;
+const EmbreeScene* EmbreeScene::of(const CpuTracer& tracer) {
+    return tracer.closest == &EmbreeScene::closest ? static_cast<const EmbreeScene*>(tracer.scene) : nullptr;
 }
+
+// Of several surfaces at the same distance, a ray finds the one that it meets first or last in the walk of the BVH. Embree walks
+// with each ray of an incoherent packet as with a ray alone, if there are triangles only. Among instances and other shapes it
+// walks with the whole packet: there, rays are traced one by one.
+bool EmbreeScene::packets_find_the_same() const { return user_geometries_.empty() && scene_.instances.size() < 2; }
 
 void EmbreeScene::closest8(const int32_t* valid, RTCRayHit8& rays) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    rtcIntersect8(valid, top_.get(), &context, &rays);
-    if (scene_.instances.size() < 2) return;
+    if (packets_find_the_same()) {
+        rtcIntersect8(valid, top_.get(), &context, &rays);
+        return;
+    }
     for (uint32_t l = 0; l < 8; ++l) {
-        uint32_t& instance = rays.hit.instID[0][l];
-        if (instance == RTC_INVALID_GEOMETRY_ID || rays.hit.geomID[l] == RTC_INVALID_GEOMETRY_ID) continue;
-        instance -= uint32_t(scene_.geometries.size());
-        rays.hit.geomID[l] += scene_.sets[scene_.instance_sets[instance]].first_geometry;
+        if (!valid[l]) continue;
+        RTCRayHit one;
+        one.ray = ray_of(rays.ray, l);
+        one.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        one.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        rtcIntersect1(top_.get(), &context, &one);
+        TraceHit hit;
+        if (!scene_hit(one.hit, hit)) continue;
+        rays.hit.geomID[l] = hit.geometry;
+        rays.hit.primID[l] = hit.primitive;
+        rays.hit.instID[0][l] = hit.instance;
     }
 }
 
 void EmbreeScene::occluded8(const int32_t* valid, RTCRay8& rays) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    rtcOccluded8(valid, top_.get(), &context, &rays);
+    if (packets_find_the_same()) {
+        rtcOccluded8(valid, top_.get(), &context, &rays);
+        return;
+    }
+    for (uint32_t l = 0; l < 8; ++l) {
+        if (!valid[l]) continue;
+        RTCRay one = ray_of(rays, l);
+        rtcOccluded1(top_.get(), &context, &one);
+        rays.tfar[l] = one.tfar;
+    }
 }
-#endif
 
 void EmbreeScene::user_bounds(const RTCBoundsFunctionArguments* arguments) {
     const UserGeometry& geometry = *static_cast<const UserGeometry*>(arguments->geometryUserPtr);

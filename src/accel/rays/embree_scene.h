@@ -46,14 +46,12 @@ class EmbreeScene {
     CpuTracer tracer();
     size_t memory_bytes() const { return memory_; }
     RTCScene top_scene() const { return top_.get(); }
-#ifdef LAMPYRIS_VECTORS
-    // Packets of eight rays, for vector kernels. Null where the scene has surfaces that are tested one ray at a time.
-    static const EmbreeScene* of_packets(const CpuTracer& tracer);
+    // Packets of eight rays, for vector kernels. `valid`: -1 for a ray, 0 where there is none.
+    static const EmbreeScene* of(const CpuTracer& tracer);  // null if the tracer is another one
     float largest_ray() const { return largest_ray_; }
     // A hit's instance and geometry are those of the scene.
     void closest8(const int32_t* valid, RTCRayHit8& rays) const;
-    void occluded8(const int32_t* valid, RTCRay8& rays) const;
-#endif
+    void occluded8(const int32_t* valid, RTCRay8& rays) const;  // an occluded ray gets a negative tfar
 
  private:
     EmbreeSceneHandle new_scene(bool watertight) const;
@@ -61,6 +59,8 @@ class EmbreeScene {
         const EmbreeScene* owner;
         uint32_t geometry;
     };
+    bool packets_find_the_same() const;
+    bool scene_hit(const RTCHit& found, TraceHit& hit) const;
     bool make_ray(const float origin[3], const float direction[3], float t_max, RTCRay& ray) const;
     void attach_geometries(RTCScene target, uint32_t set);
     EmbreeGeometry make_geometry(uint32_t index);

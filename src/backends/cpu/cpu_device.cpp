@@ -1,14 +1,11 @@
 // The CPU backend: kernels as C++, oneTBB over indices, Embree (or the shaders' BVH2, built as C++) for rays.
 #include "backends/cpu/cpu_scene.h"
+#include "backends/cpu/vectors.h"
 #include "core/base/error.h"
 #include "core/base/watch.h"
 #include "core/device/device.h"
 #include "core/device/device_choice.h"
 #include "core/device/kernel_registry.h"
-#ifdef LAMPYRIS_VECTORS
-#include "backends/vectors/spirv_program.h"
-#include "backends/vectors/vector_kernel.h"
-#endif
 
 #include <embree3/rtcore_config.h>
 #include <fmt/format.h>
@@ -20,6 +17,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cstring>
 #include <fstream>
@@ -93,11 +91,12 @@ class CpuBuffer final : public Buffer {
 
 class CpuKernel final : public Kernel {
  public:
-    CpuKernel(std::string_view file, CpuKernelFunction run) : Kernel(file), run_(run) {}
-    CpuKernelFunction run_;
-#ifdef LAMPYRIS_VECTORS
-    std::shared_ptr<const vectors::VectorKernel> vectors_;  // in place of run_, if there is one
-#endif
+    CpuKernel(std::string_view file, CpuKernelFunction run) : Kernel(file), scalar(run) {}
+    const VectorKernel* vectors() const { return lazy ? lazy->code() : compiled.get(); }
+
+    CpuKernelFunction scalar;
+    std::shared_ptr<const VectorKernel> compiled;  // in place of the scalar build, from the start
+    std::unique_ptr<LazyVectors> lazy;             // or once it pays
 };
 
 std::string processor_name() {
@@ -112,12 +111,9 @@ class CpuDevice final : public Device {
     CpuDevice(CpuTracerKind tracer, const DeviceOptions& options)
         : tracer_(tracer), meter_(std::make_shared<MemoryMeter>()) {
         if (tracer == CpuTracerKind::embree) {
-#ifdef LAMPYRIS_VECTORS
-            check_settings(backend(), options, {"watertight", "vectors"});
-            vectors_ = read_switch(options, "vectors", Switch::off);
-#else
-            check_settings(backend(), options, {"watertight"});
-#endif
+            check_settings(backend(), options, {"watertight", "vectors", "cache"});
+            vectors_ = read_switch(options, "vectors", Switch::automatic);
+            cache_ = read_cache_folder(options);
             watertight_ = read_switch(options, "watertight", Switch::on) != Switch::off;
         } else {
             check_settings(backend(), options, {});
@@ -152,10 +148,18 @@ class CpuDevice final : public Device {
     }
 
     KernelHandle compile(std::string_view file, uint64_t effects) override {
-#ifdef LAMPYRIS_VECTORS
-        if (vectors_ != Switch::off) return compile_in_vectors(file, effects);
-#endif
-        return std::make_shared<CpuKernel>(file, find_cpu_kernel(file, effects));
+        auto kernel = std::make_shared<CpuKernel>(file, find_cpu_kernel(file, effects));
+        if (vectors_ == Switch::automatic)
+            kernel->lazy = std::make_unique<LazyVectors>(std::string(file), effects, cache_);
+        if (vectors_ != Switch::on) return kernel;
+        const auto start = Clock::now();
+        try {
+            kernel->compiled = compile_in_vectors(std::string(file), effects, cache_, false);
+        } catch (const NotTranslated& reason) {
+            throw MachineError(fmt::format("error: kernel {} cannot run in vectors: {}", file, reason.what()));
+        }
+        statistics_.compile_s += seconds_since(start);
+        return kernel;
     }
 
     void run(const Kernel& kernel, const DeviceScene* scene, std::span<const NamedBuffer> buffers, uint32_t begin,
@@ -169,6 +173,7 @@ class CpuDevice final : public Device {
             pointers[i] = bound[i] ? static_cast<CpuBuffer&>(*bound[i]).data() : nullptr;
         const CpuScene* cpu_scene = static_cast<const CpuScene*>(scene);
         uint32_t unfinished = 0;
+        std::atomic<uint64_t> in_vectors{0};
         CpuInvocation call;
         std::array<void*, CpuScene::kBufferCount> scene_buffers{};
         if (cpu_scene) std::copy_n(cpu_scene->buffers(), scene_buffers.size(), scene_buffers.begin());
@@ -190,14 +195,13 @@ class CpuDevice final : public Device {
                     CpuInvocation part = call;
                     part.begin = uint32_t(range.begin());
                     part.end = uint32_t(range.end());
-#ifdef LAMPYRIS_VECTORS
-                    if (cpu_kernel.vectors_) return cpu_kernel.vectors_->run(part);
-#endif
-                    cpu_kernel.run_(part);
+                    if (run_block(cpu_kernel, part)) in_vectors += part.end - part.begin;
                 },
                 tbb::simple_partitioner{});
         });
         statistics_.kernel_s[cpu_kernel.file()] += seconds_since(start);
+        DeviceStatistics::Invocations& invocations = statistics_.invocations[cpu_kernel.file()];
+        invocations.all += count, invocations.in_vectors += in_vectors;
         if (unfinished || (cpu_scene && cpu_scene->take_unfinished()))
             throw UnfinishedError(
                 fmt::format("error: kernel {} could not finish a loop within its bound; the image would be wrong",
@@ -214,21 +218,20 @@ class CpuDevice final : public Device {
  private:
     CpuTracerKind tracer_;
     bool watertight_ = true;
-#ifdef LAMPYRIS_VECTORS
-    // On: a kernel that cannot be translated is an error. Automatic: it runs its scalar build.
     Switch vectors_ = Switch::off;
+    std::filesystem::path cache_;  // of machine code
 
-    KernelHandle compile_in_vectors(std::string_view file, uint64_t effects) const {
-        auto kernel = std::make_shared<CpuKernel>(file, find_cpu_kernel(file, effects));
-        try {
-            kernel->vectors_ = vectors::compile_vector_kernel(file, effects);
-        } catch (const vectors::NotTranslated& reason) {
-            if (vectors_ == Switch::on)
-                throw MachineError(fmt::format("error: kernel {} cannot run in vectors: {}", file, reason.what()));
+    // Whether it ran in vectors.
+    static bool run_block(const CpuKernel& kernel, const CpuInvocation& call) {
+        if (const VectorKernel* vectors = kernel.vectors()) {
+            vectors->run(call);
+            return true;
         }
-        return kernel;
+        const auto start = Clock::now();
+        kernel.scalar(call);
+        if (kernel.lazy) kernel.lazy->spent(std::chrono::nanoseconds(Clock::now() - start).count());
+        return false;
     }
-#endif
     std::shared_ptr<MemoryMeter> meter_;
     unsigned threads_ = 1;
     std::optional<oneapi::tbb::global_control> more_threads_;

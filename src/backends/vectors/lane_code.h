@@ -14,9 +14,8 @@
 #include <memory>
 
 namespace lampyris {
-struct CpuTracer;
 class EmbreeScene;
-}  // namespace lampyris
+}
 
 namespace lampyris::vectors {
 
@@ -26,10 +25,9 @@ constexpr uint32_t kLanes = 8;
 struct VectorCall {
     void* const* scene_buffers;
     void* const* kernel_buffers;
-    const CpuTracer* tracer;
     uint32_t* unfinished;
-    const EmbreeScene* packets;  // null: rays are traced one by one
-    float largest_ray;           // a ray with larger coordinates hits nothing
+    const EmbreeScene* scene;  // null for kernels that trace no rays
+    float largest_ray;         // a ray with larger coordinates hits nothing
 };
 
 // Invocations begin + first to begin + first + 7, those from begin + count on left out.

@@ -128,13 +128,13 @@ std::vector<uint32_t> values_of(const Instruction& one) {
     }
 }
 
-Program take_apart(const vulkan::Spirv& spirv) {
+Program take_apart(const shaders::Spirv& spirv) {
     Program program;
     std::unordered_map<uint32_t, std::map<uint32_t, uint32_t>> decorations;
     std::unordered_map<uint32_t, std::map<uint32_t, uint32_t>> offsets;
     uint32_t main = 0, function = 0;
     Block* block = nullptr;
-    vulkan::for_each_instruction(spirv, [&](spv::Op op, const uint32_t* words, uint32_t count) {
+    shaders::for_each_instruction(spirv, [&](spv::Op op, const uint32_t* words, uint32_t count) {
         const auto rest = [&](uint32_t from) { return std::vector<uint32_t>(words + from, words + count); };
         switch (op) {
             case spv::OpEntryPoint: main = words[2]; return;

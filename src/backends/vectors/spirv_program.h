@@ -1,19 +1,14 @@
 // A kernel's SPIR-V, taken apart: types with their layout, constants, variables, and the blocks of its main function.
 #pragma once
 
-#include "backends/vulkan/spirv.h"
+#include "backends/cpu/vectors.h"
+#include "backends/shaders/spirv.h"
 
 #include <cstdint>
-#include <stdexcept>
 #include <unordered_map>
 #include <vector>
 
 namespace lampyris::vectors {
-
-// What the translator does not know; the kernel's scalar build runs instead.
-struct NotTranslated : std::runtime_error {
-    using std::runtime_error::runtime_error;
-};
 
 struct Type {
     spv::Op op = spv::OpTypeVoid;
@@ -72,7 +67,7 @@ inline bool is_atomic(spv::Op op) { return op >= spv::OpAtomicLoad && op <= spv:
 bool is_ray_query(spv::Op op);
 
 // Throws NotTranslated.
-Program take_apart(const vulkan::Spirv& spirv);
+Program take_apart(const shaders::Spirv& spirv);
 
 // Those of an instruction's operands that are values, or pointers; the others are literals, labels and the like.
 std::vector<uint32_t> values_of(const Instruction& instruction);

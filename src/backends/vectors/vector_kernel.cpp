@@ -1,45 +1,33 @@
-#include "backends/vectors/vector_kernel.h"
-
+// The library's entry: SPIR-V from the cache or the compiler, machine code from the cache or LLVM, and the kernel that runs it.
 #include "accel/rays/embree_scene.h"
+#include "backends/cpu/vectors.h"
+#include "backends/shaders/shader_compiler.h"
 #include "backends/vectors/lane_code.h"
-#include "backends/vulkan/shader_compiler.h"
+#include "backends/vectors/version.h"
 
+#include <llvm/ExecutionEngine/Orc/CompileUtils.h>
 #include <llvm/ExecutionEngine/Orc/LLJIT.h>
 #include <llvm/Passes/PassBuilder.h>
 #include <llvm/Support/Host.h>
 #include <llvm/Support/TargetSelect.h>
 #include <llvm/Target/TargetMachine.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <cstring>
 #include <limits>
+#include <optional>
 
 namespace lampyris::vectors {
 namespace {
 
-void closest(const VectorCall* call, const int32_t* valid, RTCRayHit8* rays) {
-    if (call->packets) return call->packets->closest8(valid, *rays);
-    const RTCRay8& r = rays->ray;
-    for (uint32_t l = 0; l < kLanes; ++l) {
-        if (!valid[l]) continue;
-        const float origin[3] = {r.org_x[l], r.org_y[l], r.org_z[l]},
-                    direction[3] = {r.dir_x[l], r.dir_y[l], r.dir_z[l]};
-        TraceHit hit{};
-        if (!call->tracer->closest(call->tracer->scene, origin, direction, r.tfar[l], hit)) continue;
-        rays->hit.instID[0][l] = hit.instance;
-        rays->hit.geomID[l] = hit.geometry;
-        rays->hit.primID[l] = hit.primitive;
-    }
-}
+using shaders::ContentHash;
+using shaders::ShaderCache;
+using shaders::Spirv;
+using Object = std::unique_ptr<llvm::MemoryBuffer>;  // machine code, not linked yet
 
-void occluded(const VectorCall* call, const int32_t* valid, RTCRay8* rays) {
-    if (call->packets) return call->packets->occluded8(valid, *rays);
-    RTCRay8& r = *rays;
-    for (uint32_t l = 0; l < kLanes; ++l) {
-        if (!valid[l]) continue;
-        const float origin[3] = {r.org_x[l], r.org_y[l], r.org_z[l]},
-                    direction[3] = {r.dir_x[l], r.dir_y[l], r.dir_z[l]};
-        if (call->tracer->occluded(call->tracer->scene, origin, direction, r.tfar[l])) r.tfar[l] = -1.0f;
-    }
-}
+void closest(const VectorCall* call, const int32_t* valid, RTCRayHit8* rays) { call->scene->closest8(valid, *rays); }
+void occluded(const VectorCall* call, const int32_t* valid, RTCRay8* rays) { call->scene->occluded8(valid, *rays); }
 
 void check(llvm::Error error) {
     if (error) throw NotTranslated("LLVM: " + llvm::toString(std::move(error)));
@@ -56,13 +44,9 @@ class JitKernel final : public VectorKernel {
     JitKernel(std::unique_ptr<llvm::orc::LLJIT> jit, VectorFunction function)
         : jit_(std::move(jit)), function_(function) {}
     void run(const CpuInvocation& call) const override {
-        const EmbreeScene* packets = call.tracer ? EmbreeScene::of_packets(*call.tracer) : nullptr;
-        const VectorCall of{call.scene_buffers,
-                            call.kernel_buffers,
-                            call.tracer,
-                            call.unfinished,
-                            packets,
-                            packets ? packets->largest_ray() : std::numeric_limits<float>::infinity()};
+        const EmbreeScene* scene = call.tracer ? EmbreeScene::of(*call.tracer) : nullptr;
+        const VectorCall of{call.scene_buffers, call.kernel_buffers, call.unfinished, scene,
+                            scene ? scene->largest_ray() : std::numeric_limits<float>::infinity()};
         const uint32_t count = call.end - call.begin;
         for (uint32_t first = 0; first < count; first += kLanes) function_(&of, call.begin, count, first);
     }
@@ -91,47 +75,97 @@ void optimize(llvm::Module& module, llvm::TargetMachine& machine) {
     passes.run(module, modules);
 }
 
-bool has_avx2() {
+llvm::orc::JITTargetMachineBuilder processor() {
+    static const bool ready = !llvm::InitializeNativeTarget() && !llvm::InitializeNativeTargetAsmPrinter();
     llvm::StringMap<bool> features;
-    return llvm::sys::getHostCPUFeatures(features) && features["avx2"];
-}
-
-std::shared_ptr<const VectorKernel> compile(const vulkan::Spirv& spirv) {
-    static const bool ready =
-        !llvm::InitializeNativeTarget() && !llvm::InitializeNativeTargetAsmPrinter() && has_avx2();
-    if (!ready) throw NotTranslated("the processor has no AVX2");
-    const Program program = take_apart(spirv);
-    auto context = std::make_unique<llvm::LLVMContext>();
+    if (!ready || !llvm::sys::getHostCPUFeatures(features) || !features["avx2"])
+        throw NotTranslated("the processor has no AVX2");
     auto target = check(llvm::orc::JITTargetMachineBuilder::detectHost());
     target.getOptions().AllowFPOpFusion = llvm::FPOpFusion::Strict;
-    const auto machine = check(target.createTargetMachine());
-    auto module = lane_code(program, *context);
-    module->setDataLayout(machine->createDataLayout());
-    module->setTargetTriple(machine->getTargetTriple().str());
+    return target;
+}
+
+Object machine_code(const Spirv& spirv, llvm::TargetMachine& machine) {
+    const Program program = take_apart(spirv);
+    llvm::LLVMContext context;
+    const auto module = lane_code(program, context);
+    module->setDataLayout(machine.createDataLayout());
+    module->setTargetTriple(machine.getTargetTriple().str());
     for (llvm::Function& function : *module) {
-        function.addFnAttr("target-cpu", machine->getTargetCPU());
-        function.addFnAttr("target-features", machine->getTargetFeatureString());
+        function.addFnAttr("target-cpu", machine.getTargetCPU());
+        function.addFnAttr("target-features", machine.getTargetFeatureString());
     }
-    optimize(*module, *machine);
+    optimize(*module, machine);
+    return check(llvm::orc::SimpleCompiler(machine)(*module));
+}
+
+ContentHash key_of(const Spirv& spirv, const llvm::TargetMachine& machine) {
+    ContentHash key;
+    for (const llvm::StringRef part : {llvm::StringRef(LAMPYRIS_VECTORS_VERSION), llvm::StringRef(LLVM_VERSION_STRING),
+                                       machine.getTargetCPU(), machine.getTargetFeatureString()})
+        key.add(std::string_view(part.data(), part.size()));
+    key.add(std::string_view(reinterpret_cast<const char*>(spirv.data()), spirv.size() * sizeof(uint32_t)));
+    return key;
+}
+
+// Code that somebody else could have written is not run.
+bool is_ours(const std::filesystem::path& file) {
+    struct stat status {};
+    return stat(file.c_str(), &status) == 0 && status.st_uid == geteuid() &&
+           (status.st_mode & (S_IWGRP | S_IWOTH)) == 0;
+}
+
+Object find_code(const ShaderCache& cache, const ContentHash& key) {
+    if (!is_ours(cache.path(key))) return nullptr;
+    const auto words = cache.find(key);
+    if (!words) return nullptr;
+    return llvm::MemoryBuffer::getMemBufferCopy(
+        llvm::StringRef(reinterpret_cast<const char*>(words->data()), words->size() * sizeof(uint32_t)));
+}
+
+void store_code(const ShaderCache& cache, const ContentHash& key, const llvm::MemoryBuffer& object) {
+    shaders::Words words((object.getBufferSize() + 3) / 4);  // ELF does not mind the zeros at its end
+    std::memcpy(words.data(), object.getBufferStart(), object.getBufferSize());
+    cache.store(key, words);
+}
+
+std::shared_ptr<const VectorKernel> link(const llvm::orc::JITTargetMachineBuilder& target, Object object) {
     auto jit = check(llvm::orc::LLJITBuilder().setJITTargetMachineBuilder(target).create());
     llvm::orc::SymbolMap functions;
     functions[jit->mangleAndIntern(kClosest)] = llvm::JITEvaluatedSymbol::fromPointer(ClosestFunction(&closest));
     functions[jit->mangleAndIntern(kOccluded)] = llvm::JITEvaluatedSymbol::fromPointer(OccludedFunction(&occluded));
     check(jit->getMainJITDylib().define(llvm::orc::absoluteSymbols(std::move(functions))));
-    check(jit->addIRModule(llvm::orc::ThreadSafeModule(std::move(module), std::move(context))));
+    check(jit->addObjectFile(std::move(object)));
     const auto address = check(jit->lookup(kFunctionName));
     return std::make_shared<JitKernel>(std::move(jit), address.toPtr<VectorFunction>());
 }
 
-}  // namespace
-
-std::shared_ptr<const VectorKernel> compile_vector_kernel(std::string_view file, uint64_t effects) {
-    vulkan::ShaderOptions options;
+std::shared_ptr<const VectorKernel> compile_kernel(const std::string& file, uint64_t effects,
+                                                   const std::filesystem::path& folder, bool only_kept) {
+    const auto target = processor();
+    const auto machine = check(llvm::orc::JITTargetMachineBuilder(target).createTargetMachine());
+    shaders::ShaderOptions options;
     options.effects = effects;
     options.ray_query = true;
     options.local_size = 1;
-    return compile(
-        vulkan::compile_shader(file, options, vulkan::ShaderCache(vulkan::ShaderCache::default_folder())).spirv);
+    const ShaderCache shaders_kept(folder), code_kept(folder, ".vectors");
+    std::optional<Spirv> spirv = shaders::find_shader(file, options, shaders_kept);
+    if (!spirv && only_kept) return nullptr;
+    if (!spirv) spirv = shaders::compile_shader(file, options, shaders_kept).spirv;
+    const ContentHash key = key_of(*spirv, *machine);
+    Object object = find_code(code_kept, key);
+    if (!object && only_kept) return nullptr;
+    if (!object) {
+        object = machine_code(*spirv, *machine);
+        store_code(code_kept, key, *object);
+    }
+    return link(target, std::move(object));
 }
 
+}  // namespace
 }  // namespace lampyris::vectors
+
+extern "C" const lampyris::VectorCompiler* lampyris_vectors() {
+    static const lampyris::VectorCompiler compiler{&lampyris::vectors::compile_kernel};
+    return &compiler;
+}

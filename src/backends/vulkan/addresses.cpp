@@ -9,6 +9,11 @@
 namespace lampyris::vulkan {
 namespace {
 
+using shaders::for_each_instruction;
+using shaders::is_annotation;
+using shaders::kHeaderWords;
+using shaders::precedes_annotations;
+
 // The lowest set bit of a number: all multiples of the number are aligned to it.
 uint32_t low_bit(uint32_t x) { return x & (~x + 1); }
 

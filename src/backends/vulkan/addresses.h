@@ -1,12 +1,15 @@
 // Buffers that are too large for a device to bind: a kernel's SPIR-V is changed so that it accesses them by their addresses.
 #pragma once
 
-#include "backends/vulkan/spirv.h"
+#include "backends/shaders/spirv.h"
 
 #include <cstdint>
 #include <span>
 
 namespace lampyris::vulkan {
+
+using shaders::ShaderBinding;
+using shaders::Spirv;
 
 // The push constants of a kernel (core/kernel/entry.glsl); the addresses follow, 64 bits each.
 struct KernelRange {

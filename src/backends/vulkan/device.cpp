@@ -28,7 +28,7 @@ class VulkanDevice final : public Device {
     explicit VulkanDevice(const DeviceOptions& options)
         : context_(std::make_shared<Context>(options)),
           account_(std::make_shared<MemoryAccount>()),
-          cache_(cache_folder(options)) {
+          cache_(read_cache_folder(options)) {
         check_settings("vulkan", options,
                        {"cache", "exact", "max_binding", "optimize", "precise", "ray_query", "specialise", "staging",
                         "validation", "wide_reads", "workgroup"});
@@ -108,10 +108,10 @@ class VulkanDevice final : public Device {
     KernelHandle compile(std::string_view file, uint64_t effects) override {
         const auto start = Clock::now();
         const CompileNotice notice(file);
-        ShaderOptions options = shader_options_;
+        shaders::ShaderOptions options = shader_options_;
         options.effects = specialise_ ? effects : effects | kernel::kAllEffects;
         options.names = !find_kernel_buffers(file).has_value();
-        CompiledShader shader = compile_shader(file, options, cache_);
+        shaders::CompiledShader shader = shaders::compile_shader(file, options, cache_);
         std::shared_ptr<VulkanKernel> kernel;
         guarded(fmt::format("compiling kernel {}", file), [&] {
             kernel = std::make_shared<VulkanKernel>(context_, std::string(file), std::move(shader), options.local_size);
@@ -188,12 +188,6 @@ class VulkanDevice final : public Device {
     }
 
  private:
-    static std::filesystem::path cache_folder(const DeviceOptions& options) {
-        const auto found = options.settings.find("cache");
-        if (found == options.settings.end()) return ShaderCache::default_folder();
-        return found->second == "off" ? std::filesystem::path() : std::filesystem::path(found->second);
-    }
-
     static uint64_t largest_binding(const DeviceOptions& options) {
         const auto found = options.settings.find("max_binding");
         if (found == options.settings.end()) return std::numeric_limits<uint64_t>::max();
@@ -208,7 +202,7 @@ class VulkanDevice final : public Device {
 
     static uint32_t workgroup_size(const DeviceOptions& options) {
         const auto found = options.settings.find("workgroup");
-        if (found == options.settings.end()) return ShaderOptions().local_size;
+        if (found == options.settings.end()) return shaders::ShaderOptions().local_size;
         for (const uint32_t size : {8u, 16u, 32u, 64u, 128u, 256u}) {
             if (found->second == std::to_string(size)) return size;
         }
@@ -246,8 +240,8 @@ class VulkanDevice final : public Device {
 
     std::shared_ptr<Context> context_;
     std::shared_ptr<MemoryAccount> account_;
-    ShaderCache cache_;
-    ShaderOptions shader_options_;
+    shaders::ShaderCache cache_;
+    shaders::ShaderOptions shader_options_;
     bool staged_ = false;
     bool specialise_ = true;
     std::unique_ptr<VulkanBuffer> unfinished_;

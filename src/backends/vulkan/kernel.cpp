@@ -18,7 +18,7 @@ constexpr uint32_t kFirstChunk = 4096;    // indices of the first dispatch, whos
 // The buffers of set 1 that the module uses.
 std::vector<KernelBuffer> named_buffers(const Spirv& spirv) {
     std::vector<KernelBuffer> buffers;
-    for (const ShaderBinding& binding : used_bindings(spirv))
+    for (const ShaderBinding& binding : shaders::used_bindings(spirv))
         if (binding.set == 1) buffers.push_back({binding.binding, binding.name, 0});
     return buffers;
 }
@@ -31,7 +31,7 @@ VulkanKernel::VulkanKernel(std::shared_ptr<Context> context, const std::string& 
       context_(std::move(context)),
       shader_(std::move(shader)),
       local_size_(local_size),
-      bindings_(used_bindings(shader_.spirv)) {}
+      bindings_(shaders::used_bindings(shader_.spirv)) {}
 
 bool VulkanKernel::uses_acceleration_structure() const {
     return std::any_of(bindings_.begin(), bindings_.end(), [](const auto& b) { return b.acceleration_structure; });

@@ -1,8 +1,8 @@
 // A compiled kernel on a Vulkan device, and its dispatches.
 #pragma once
 
+#include "backends/shaders/shader_compiler.h"
 #include "backends/vulkan/pipeline.h"
-#include "backends/vulkan/shader_compiler.h"
 #include "core/device/kernel_types.h"
 
 #include <functional>
@@ -10,6 +10,8 @@
 #include <span>
 
 namespace lampyris::vulkan {
+
+using shaders::CompiledShader;
 
 // Set 0: the scene (core/kernel/scene_buffers.h).
 struct SceneBindings {

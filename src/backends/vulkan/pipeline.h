@@ -1,14 +1,17 @@
 // A kernel's pipeline for one choice of which buffers are bound and which are accessed by address.
 #pragma once
 
+#include "backends/shaders/spirv.h"
 #include "backends/vulkan/memory.h"
-#include "backends/vulkan/spirv.h"
 
 #include <span>
 #include <string>
 #include <vector>
 
 namespace lampyris::vulkan {
+
+using shaders::ShaderBinding;
+using shaders::Spirv;
 
 constexpr uint32_t kSets = 2;  // of descriptors: the scene's, the kernel's own
 

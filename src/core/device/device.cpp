@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <optional>
 #include <stdexcept>
 
@@ -85,6 +86,15 @@ Switch read_switch(const DeviceOptions& options, const std::string& key, Switch 
     if (found->second == "off" || found->second == "false") return Switch::off;
     if (found->second == "auto") return Switch::automatic;
     throw InputError(fmt::format("error: --set backend.{}={}: valid are on, off and auto", key, found->second));
+}
+
+std::filesystem::path read_cache_folder(const DeviceOptions& options) {
+    if (const auto found = options.settings.find("cache"); found != options.settings.end())
+        return found->second == "off" ? std::filesystem::path() : std::filesystem::path(found->second);
+    if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg && *xdg) return std::filesystem::path(xdg) / "lampyris";
+    if (const char* home = std::getenv("HOME"); home && *home)
+        return std::filesystem::path(home) / ".cache" / "lampyris";
+    return {};
 }
 
 std::unique_ptr<Device> create_device(const std::string& backend, const DeviceOptions& options) {

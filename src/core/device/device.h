@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -76,6 +77,10 @@ struct DeviceStatistics {
     double compile_s = 0;  // shaders
     size_t memory_bytes = 0, peak_memory_bytes = 0;
     std::map<std::string, double> kernel_s;  // seconds in each kernel, by its file's name, and in build_boxes
+    struct Invocations {
+        uint64_t all = 0, in_vectors = 0;
+    };
+    std::map<std::string, Invocations> invocations;  // of each kernel; empty but on CPU backends
     std::map<std::string, size_t>
         spirv_bytes;  // size of each kernel's SPIR-V, by its file's name; empty on CPU backends
 };
@@ -174,6 +179,10 @@ void check_settings(const std::string& backend, const DeviceOptions& options, co
 // An on/off/auto setting of `--set backend.KEY=VALUE`; throws InputError for anything else.
 enum class Switch { off, on, automatic };
 Switch read_switch(const DeviceOptions& options, const std::string& key, Switch otherwise);
+
+// Where compiled kernels are kept: `--set backend.cache=FOLDER`; empty for `off`. Otherwise $XDG_CACHE_HOME/lampyris, or
+// ~/.cache/lampyris; empty if neither is known.
+std::filesystem::path read_cache_folder(const DeviceOptions& options);
 
 // Throws InputError for an unknown backend (with the list), MachineError if the backend has no device.
 std::unique_ptr<Device> create_device(const std::string& backend, const DeviceOptions& options = {});

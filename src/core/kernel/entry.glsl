@@ -1,4 +1,4 @@
-// A kernel's entry point on Vulkan: backends/vulkan/shader_compiler.cpp appends it to every shader.
+// A kernel's entry point on Vulkan: backends/shaders/shader_compiler.cpp appends it to every shader.
 layout(local_size_x = KERNEL_LOCAL_SIZE) in;
 layout(push_constant) uniform KernelRange { uint begin; uint count; } kernel_range;
 

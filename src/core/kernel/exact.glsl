@@ -1,6 +1,6 @@
 // Division and square root rounded as IEEE 754 requires, for devices that round otherwise: Vulkan allows errors of 2.5
 // units in the last place, and GPUs make them. With `--set backend.exact=on` (docs/decisions/exact-arithmetic.md),
-// backends/vulkan/exact_arithmetic.cpp replaces every quotient and square root of a shader by calls to these functions;
+// backends/shaders/exact_arithmetic.cpp replaces every quotient and square root of a shader by calls to these functions;
 // the C++ build does not need them. exact_arithmetic_test compiles this file as C++ and tests the hardest cases.
 //
 // The device's result is a guess, off by a few units. Significands are integers of 24 bits. The remainder of the guess

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace lampyris {
@@ -87,6 +88,9 @@ nlohmann::ordered_json statistics_json(const RunRecord& run) {
     for (const auto& [name, value] : run.counts) counts[name] = value;
     Json kernels = Json::object();
     for (const auto& [name, seconds] : run.device_statistics.kernel_s) kernels[name] = seconds;
+    Json in_vectors = Json::object();
+    for (const auto& [name, invocations] : run.device_statistics.invocations)
+        in_vectors[name] = double(invocations.in_vectors) / double(std::max<uint64_t>(invocations.all, 1));
     Json spirv_bytes = Json::object();
     for (const auto& [name, bytes] : run.device_statistics.spirv_bytes) spirv_bytes[name] = bytes;
     Json result = {
@@ -112,6 +116,7 @@ nlohmann::ordered_json statistics_json(const RunRecord& run) {
         {"total_s", run.total_s},
         {"phases", phases},
         {"kernels", kernels},
+        {"in_vectors", in_vectors},
         {"spirv_bytes", spirv_bytes},
         {"setup_s",
          {{"parse", run.parse_s},

@@ -1,14 +1,15 @@
 // Kernel text to SPIR-V: glslang, then exact_arithmetic and forbid_contraction, then SPIRV-Tools' optimizer, then the cache on disk.
 #pragma once
 
-#include "backends/vulkan/shader_cache.h"
-#include "backends/vulkan/spirv.h"
+#include "backends/shaders/shader_cache.h"
+#include "backends/shaders/spirv.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
-namespace lampyris::vulkan {
+namespace lampyris::shaders {
 
 struct ShaderOptions {
     uint64_t effects = 0;          // the exact mask: code for other effects is compiled out
@@ -31,7 +32,10 @@ struct CompiledShader {
 // Throws InputError with glslang's messages (file:line of the kernel's own files) where the kernel is not valid GLSL.
 CompiledShader compile_shader(std::string_view kernel_file, const ShaderOptions& options, const ShaderCache& cache);
 
+// What compile_shader has put into the cache.
+std::optional<Spirv> find_shader(std::string_view kernel_file, const ShaderOptions& options, const ShaderCache& cache);
+
 // The entry text that compile_shader hands to glslang: defines, and includes of the kernel and of core/kernel/entry.glsl.
 std::string shader_source(std::string_view kernel_file, const ShaderOptions& options);
 
-}  // namespace lampyris::vulkan
+}  // namespace lampyris::shaders

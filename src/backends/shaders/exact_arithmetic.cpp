@@ -1,4 +1,4 @@
-#include "backends/vulkan/spirv.h"
+#include "backends/shaders/spirv.h"
 
 #include <glslang/SPIRV/GLSL.std.450.h>
 
@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string_view>
 
-namespace lampyris::vulkan {
+namespace lampyris::shaders {
 namespace {
 
 constexpr std::string_view kPrefix = "exact_", kQuotient = "exact_quotient(", kRoot = "exact_root(";
@@ -74,4 +74,4 @@ Spirv exact_arithmetic(const Spirv& spirv, bool flush_denormals) {
     return out;
 }
 
-}  // namespace lampyris::vulkan
+}  // namespace lampyris::shaders

@@ -1,4 +1,4 @@
-#include "backends/vulkan/shader_cache.h"
+#include "backends/shaders/shader_cache.h"
 
 #include "core/base/error.h"
 #include "core/base/file.h"
@@ -6,14 +6,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <span>
 #include <system_error>
 #include <vector>
 
-namespace lampyris::vulkan {
+namespace lampyris::shaders {
 namespace {
 
 constexpr uint64_t kMagic = 0x32565053'594d414cu;  // "LAMYSPV2", little endian
@@ -25,10 +24,10 @@ struct Header {
 };
 
 // With the key: the file of another kernel under this name is none of ours.
-std::array<uint64_t, 2> checksum_of(const ContentHash& key, const Spirv& spirv) {
+std::array<uint64_t, 2> checksum_of(const ContentHash& key, const Words& words) {
     ContentHash hash;
     for (const uint64_t part : key.value()) hash.add(part);
-    hash.add(std::string_view(reinterpret_cast<const char*>(spirv.data()), spirv.size() * sizeof(uint32_t)));
+    hash.add(std::string_view(reinterpret_cast<const char*>(words.data()), words.size() * sizeof(uint32_t)));
     return hash.value();
 }
 
@@ -59,19 +58,12 @@ void ContentHash::add(uint64_t value) {
 
 std::array<uint64_t, 2> ContentHash::value() const { return {mix(a_), mix(b_ ^ a_)}; }
 
-std::filesystem::path ShaderCache::default_folder() {
-    if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg && *xdg) return std::filesystem::path(xdg) / "lampyris";
-    if (const char* home = std::getenv("HOME"); home && *home)
-        return std::filesystem::path(home) / ".cache" / "lampyris";
-    return {};
-}
-
 std::filesystem::path ShaderCache::path(const ContentHash& key) const {
     const auto value = key.value();
-    return folder_ / fmt::format("{:016x}{:016x}.spv", value[0], value[1]);
+    return folder_ / fmt::format("{:016x}{:016x}{}", value[0], value[1], extension_);
 }
 
-std::optional<Spirv> ShaderCache::find(const ContentHash& key) const {
+std::optional<Words> ShaderCache::find(const ContentHash& key) const {
     if (folder_.empty()) return std::nullopt;
     const std::filesystem::path name = path(key);
     std::error_code error;
@@ -83,25 +75,25 @@ std::optional<Spirv> ShaderCache::find(const ContentHash& key) const {
     if (error || (size - sizeof header) % sizeof(uint32_t) != 0 ||
         (size - sizeof header) / sizeof(uint32_t) != header.words)
         return std::nullopt;
-    Spirv spirv(header.words);
-    if (!file.read(reinterpret_cast<char*>(spirv.data()),
+    Words words(header.words);
+    if (!file.read(reinterpret_cast<char*>(words.data()),
                    static_cast<std::streamsize>(header.words * sizeof(uint32_t))))
         return std::nullopt;
-    if (checksum_of(key, spirv) != header.checksum) return std::nullopt;
-    return spirv;
+    if (checksum_of(key, words) != header.checksum) return std::nullopt;
+    return words;
 }
 
-void ShaderCache::store(const ContentHash& key, const Spirv& spirv) const {
+void ShaderCache::store(const ContentHash& key, const Words& words) const {
     if (folder_.empty()) return;
     std::error_code error;
     std::filesystem::create_directories(folder_, error);
     const std::filesystem::path name = path(key);
     // Whatever else has this name (a folder, a pipe) stays.
     if (std::filesystem::exists(name, error) && !std::filesystem::is_regular_file(name, error)) return;
-    const Header header{kMagic, spirv.size(), checksum_of(key, spirv)};
-    std::vector<std::byte> bytes(sizeof header + spirv.size() * sizeof(uint32_t));
+    const Header header{kMagic, words.size(), checksum_of(key, words)};
+    std::vector<std::byte> bytes(sizeof header + words.size() * sizeof(uint32_t));
     std::memcpy(bytes.data(), &header, sizeof header);
-    const auto content = std::as_bytes(std::span(spirv));
+    const auto content = std::as_bytes(std::span(words));
     std::copy(content.begin(), content.end(), bytes.begin() + sizeof header);
     try {
         write_file_atomically(name.string(), std::span<const std::byte>(bytes));
@@ -109,4 +101,4 @@ void ShaderCache::store(const ContentHash& key, const Spirv& spirv) const {
     }
 }
 
-}  // namespace lampyris::vulkan
+}  // namespace lampyris::shaders

@@ -1,4 +1,4 @@
-#include "backends/vulkan/spirv.h"
+#include "backends/shaders/spirv.h"
 
 #include <glslang/SPIRV/spirv.hpp>
 
@@ -8,7 +8,7 @@
 #include <set>
 #include <tuple>
 
-namespace lampyris::vulkan {
+namespace lampyris::shaders {
 namespace {
 
 // Arithmetic to which NoContraction may apply according to the SPIR-V specification; all have their result id in word 2.
@@ -120,4 +120,4 @@ std::vector<ShaderBinding> used_bindings(const Spirv& spirv) {
     return result;
 }
 
-}  // namespace lampyris::vulkan
+}  // namespace lampyris::shaders

@@ -1,4 +1,4 @@
-#include "backends/vulkan/shader_compiler.h"
+#include "backends/shaders/shader_compiler.h"
 
 #include "core/base/error.h"
 #include "core/device/kernel_registry.h"
@@ -16,7 +16,7 @@
 #include <mutex>
 #include <set>
 
-namespace lampyris::vulkan {
+namespace lampyris::shaders {
 namespace {
 
 // To be raised when the steps from text to SPIR-V change. (The libraries' versions are a separate part of the key.)
@@ -110,15 +110,11 @@ ContentHash key_of(const std::string& source, const ShaderOptions& options) {
     return hash;
 }
 
-struct GlslangProcess {
-    GlslangProcess() { glslang::InitializeProcess(); }
-    ~GlslangProcess() { glslang::FinalizeProcess(); }
-};
-
 Spirv compile_glsl(std::string_view kernel_file, const std::string& source, bool keep_uncalled) {
     static std::mutex mutex;  // protects glslang's process state
     const std::lock_guard lock(mutex);
-    static const GlslangProcess process;
+    static const bool ready = glslang::InitializeProcess();  // for as long as the process lives: any thread may compile
+    if (!ready) throw std::logic_error("glslang does not start");
     glslang::TShader shader(EShLangCompute);
     const char* text = source.c_str();
     const int length = static_cast<int>(source.size());
@@ -201,6 +197,10 @@ std::string shader_source(std::string_view kernel_file, const ShaderOptions& opt
         options.exact ? "#include \"core/kernel/exact.glsl\"\n" : "", includes);
 }
 
+std::optional<Spirv> find_shader(std::string_view kernel_file, const ShaderOptions& options, const ShaderCache& cache) {
+    return cache.find(key_of(shader_source(kernel_file, options), options));
+}
+
 CompiledShader compile_shader(std::string_view kernel_file, const ShaderOptions& options, const ShaderCache& cache) {
     for (const std::string_view part : kernel_parts(kernel_file))
         if (!find_kernel_text(part)) throw std::logic_error(fmt::format("there is no kernel {}", part));
@@ -215,4 +215,4 @@ CompiledShader compile_shader(std::string_view kernel_file, const ShaderOptions&
     return {std::move(spirv), false};
 }
 
-}  // namespace lampyris::vulkan
+}  // namespace lampyris::shaders

@@ -1,14 +1,15 @@
-// SPIR-V on disk, keyed by content. A damaged entry, or one that belongs to another key, is found by its checksum and made again.
+// Compiled kernels on disk (SPIR-V, machine code), keyed by content. A damaged entry, or one that belongs to another key, is found by its checksum and made again.
 #pragma once
 
-#include "backends/vulkan/spirv.h"
-
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
-namespace lampyris::vulkan {
+namespace lampyris::shaders {
 
 // 128 bits of FNV-1a with a final mix: wide enough that an accidental collision can be ruled out.
 class ContentHash {
@@ -21,20 +22,22 @@ class ContentHash {
     uint64_t a_ = 0xcbf29ce484222325u, b_ = 0x84222325cbf29ce4u;
 };
 
+using Words = std::vector<uint32_t>;
+
 class ShaderCache {
  public:
     // An empty folder switches the cache off. The folder is made when something is stored.
-    explicit ShaderCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
-    // $XDG_CACHE_HOME/lampyris, or ~/.cache/lampyris; empty if neither is known.
-    static std::filesystem::path default_folder();
+    explicit ShaderCache(std::filesystem::path folder, std::string extension = ".spv")
+        : folder_(std::move(folder)), extension_(std::move(extension)) {}
 
-    std::optional<Spirv> find(const ContentHash& key) const;
+    std::optional<Words> find(const ContentHash& key) const;
     // Readers see all of the file or nothing. Failure to write is not an error: the cache only saves time.
-    void store(const ContentHash& key, const Spirv& spirv) const;
+    void store(const ContentHash& key, const Words& words) const;
     std::filesystem::path path(const ContentHash& key) const;
 
  private:
     std::filesystem::path folder_;
+    std::string extension_;
 };
 
-}  // namespace lampyris::vulkan
+}  // namespace lampyris::shaders

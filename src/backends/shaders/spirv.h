@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace lampyris::vulkan {
+namespace lampyris::shaders {
 
 using Spirv = std::vector<uint32_t>;
 
@@ -46,4 +46,4 @@ struct ShaderBinding {
 // The bindings that the module's functions use, in order of set and binding.
 std::vector<ShaderBinding> used_bindings(const Spirv& spirv);
 
-}  // namespace lampyris::vulkan
+}  // namespace lampyris::shaders

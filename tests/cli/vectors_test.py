@@ -1,0 +1,138 @@
+"""Kernels in vectors: machine code on disk, and what happens without it."""
+
+import json
+import shutil
+import signal
+import subprocess
+import time
+
+import pytest
+
+from support.render_program import run
+
+SMALL = ["--resolution", "16x16", "--spp", "2", "--quiet"]
+
+
+@pytest.fixture(autouse=True)
+def built_with_vectors(build_dir):
+    if not (build_dir / "liblampyris_vectors.so").exists():
+        pytest.skip("built with LAMPYRIS_VECTORS=OFF")
+
+
+@pytest.fixture
+def render(program, scene, tmp_path):
+    """Renders in vectors, with a cache of the test's own: the image's bytes, and seconds of compiling."""
+
+    def render(vectors="on", program=program, **options):
+        image, statistics = tmp_path / "image.pfm", tmp_path / "statistics.json"
+        settings = ["--set", f"backend.vectors={vectors}", "--set", f"backend.cache={tmp_path / 'cache'}"]
+        done = run(program, scene, *SMALL, *settings, "-o", image, "--stats", statistics, **options)
+        assert done.returncode == 0, done.stderr
+        found = json.loads(statistics.read_text())
+        assert set(found["in_vectors"].values()) == {1.0 if vectors == "on" else 0.0}
+        return image.read_bytes(), found["setup_s"]["compile"]
+
+    return render
+
+
+def kept(tmp_path):
+    (file,) = (tmp_path / "cache").glob("*.vectors")
+    return file
+
+
+def test_code_is_kept(render, tmp_path):
+    scalar, _ = render("off")
+    assert not (tmp_path / "cache").exists()
+    made, seconds = render()
+    assert made == scalar
+    file = kept(tmp_path)
+    inode = file.stat().st_ino
+    again, seconds_again = render()
+    assert again == scalar
+    assert seconds_again < seconds / 3
+    assert file.stat().st_ino == inode
+
+
+def test_damaged_code_is_not_run(render, tmp_path):
+    expected, _ = render()
+    file = kept(tmp_path)
+    good = file.read_bytes()
+    middle = len(good) // 2
+    for bad in (
+        b"",
+        good[:100],
+        good[:-4],
+        good + b"1234",
+        good[:middle] + bytes([good[middle] ^ 1]) + good[middle + 1 :],
+        bytes(len(good)),
+    ):
+        file.write_bytes(bad)
+        image, _ = render()
+        assert image == expected
+        assert file.read_bytes() == good
+
+
+def test_code_that_others_could_have_written_is_not_run(render, tmp_path):
+    expected, _ = render()
+    file = kept(tmp_path)
+    file.chmod(0o664)
+    inode = file.stat().st_ino
+    image, _ = render()
+    assert image == expected
+    assert file.stat().st_ino != inode
+
+
+def test_a_folder_in_its_place_is_left_alone(render, tmp_path):
+    expected, _ = render()
+    file = kept(tmp_path)
+    file.unlink()
+    file.mkdir()
+    image, _ = render()
+    assert image == expected
+    assert file.is_dir()
+
+
+def test_llvm_is_not_loaded_for_a_short_rendering(program, scene, tmp_path):
+    done = run(program, scene, *SMALL, "-o", tmp_path / "a.pfm", env={"LD_DEBUG": "libs"})
+    assert done.returncode == 0
+    assert "libembree" in done.stderr
+    assert "liblampyris_vectors" not in done.stderr
+    assert "libLLVM" not in done.stderr
+
+
+def test_without_the_library(render, program, scene, build_dir, tmp_path):
+    folder = tmp_path / "bin"
+    folder.mkdir()
+    for file in (build_dir / "lampyris", *build_dir.glob("liblampyris.so*")):
+        shutil.copy2(file, folder, follow_symlinks=False)
+    environment = {"LD_LIBRARY_PATH": str(folder)}
+    render("auto", program=folder / "lampyris", env=environment)
+    done = run(
+        folder / "lampyris",
+        scene,
+        *SMALL,
+        "--set",
+        "backend.vectors=on",
+        "-o",
+        tmp_path / "b.pfm",
+        env=environment,
+    )
+    assert done.returncode == 2
+    assert "liblampyris_vectors.so" in done.stderr
+    assert not (tmp_path / "b.pfm").exists()
+
+
+def test_an_interruption_does_not_wait_for_the_compiler(program, source_dir, tmp_path):
+    """Of a kernel that takes seconds to compile, in the middle of that."""
+    scene = source_dir / "scenes" / "reference" / "coated-diffuse.pbrt"
+    image = tmp_path / "image.exr"
+    arguments = [program, "render", scene, "--spp", "1000000", "--quiet", "--set", f"backend.cache={tmp_path}"]
+    with subprocess.Popen([*arguments, "-o", image], stderr=subprocess.PIPE) as process:
+        time.sleep(4)
+        asked = time.monotonic()
+        process.send_signal(signal.SIGINT)
+        process.wait(timeout=60)
+        waited = time.monotonic() - asked
+    assert process.returncode == 130
+    assert image.exists()
+    assert waited < 3
