@@ -84,7 +84,10 @@ class Lampyris:
 
     def __init__(self, folder: Path, scene: PeerScene, scratch: Path, threads: int) -> None:
         self.program, self.scene, self.scratch = folder / "lampyris", scene, scratch
+        self.ready = False
+        # In vectors from the start: the first rendering compiles them, and keeps the code for the others.
         self.options = ["--backend", "cpu", "--threads", threads, "-q"]
+        self.options += ["--set", "backend.vectors=on", "--set", f"backend.cache={scratch}"]
 
     def cpu_seconds(self, sampler: str, samples: int, seed: int) -> tuple[numpy.ndarray, float]:
         """A picture, and the processor seconds of the process."""
@@ -99,6 +102,9 @@ class Lampyris:
 
     def render(self, sampler: str, samples: int, seed: int) -> tuple[numpy.ndarray, float]:
         """A picture, and the processor seconds of rendering: what one sample takes, set-up with it, is subtracted."""
+        if not self.ready:
+            self.cpu_seconds(sampler, 1, seed)
+            self.ready = True
         _, one = self.cpu_seconds(sampler, 1, seed)
         image, all_samples = self.cpu_seconds(sampler, samples, seed)
         return image, (all_samples - one) * samples / (samples - 1)

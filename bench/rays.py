@@ -1,4 +1,4 @@
-"""Measure rays per second of `path` as a share of bare Embree on the same rays, threads and process, in turns."""
+"""Rays per second of `path` in vectors as a share of bare Embree: the same rays, threads and process, in turns."""
 
 import json
 import os
@@ -30,7 +30,7 @@ def main() -> None:
     arguments = parser.parse_args()
     build(arguments.build, "rays_bench")
     print(
-        f"{'scene':30} {'triangles':>9} {'path Mrays/s':>13} {'Embree Mrays/s':>15}"
+        f"{'scene':30} {'triangles':>9} {'path Mrays/s':>13} {'scalar':>7} {'Embree Mrays/s':>15} {'packets':>8}"
         f" {'share':>6} {'from':>5} {'to':>5} {'goal':>5}"
     )
     rows = []
@@ -42,7 +42,8 @@ def main() -> None:
         row["met"] = None if goal is None else row["share"] >= goal
         rows.append(row)
         print(
-            f"{name:30} {row['primitives']:9} {row['path_mrays_per_s']:13.3f} {row['embree_mrays_per_s']:15.3f}"
+            f"{name:30} {row['primitives']:9} {row['path_mrays_per_s']:13.3f} {row['scalar_mrays_per_s']:7.3f}"
+            f" {row['embree_mrays_per_s']:15.3f} {row['packets_mrays_per_s']:8.3f}"
             f" {row['share']:6.2f} {row['share_min']:5.2f} {row['share_max']:5.2f}"
             f" {'' if goal is None else f'{goal:.2f}':>5} {'' if goal is None else 'met' if row['met'] else 'missed'}",
             flush=True,

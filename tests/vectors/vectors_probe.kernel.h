@@ -4,6 +4,7 @@
 BUFFER_RO(0, uint, numbers)
 BUFFER_RW(1, uint, results)  // 8 for each invocation
 BUFFER_RW(2, uint, sums)
+BUFFER_RW(3, uint64, wide_sums)
 
 PRIVATE(uint, digits, 10)
 
@@ -64,6 +65,12 @@ KERNEL(vectors_probe) {
     uint quotient = 0u;
     if (x % 5u != 0u) quotient = 1000000u / (x % 5u);
     results[8u * index + 5u] = quotient;
+
+    // Numbers of 64 bits.
+    uint64 wide = uint64(float(x) * 1048577.0f) * uint64(3u) + (uint64(x) << 7);
+    ATOMIC_ADD_U64(wide_sums[x % 4u], wide);
+    ATOMIC_MAX_U64(wide_sums[4u + x % 4u], wide);
+    results[8u * index + 5u] ^= uint(wide) ^ uint(wide >> 32);
 
     // Conversions, and a minimum of what may be no number.
     float f = float(x) * 1.7f - 3.0e9f;

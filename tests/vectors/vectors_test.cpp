@@ -29,8 +29,10 @@ TEST(Vectors, InvocationsGoDifferentWays) {
         const auto device = create_device("cpu", vectors ? in_vectors() : DeviceOptions());
         const BufferHandle in = upload(*device, numbers, "numbers");
         const BufferHandle results = upload(*device, std::vector<uint32_t>(8 * numbers.size() + 4, 7u), "results");
-        const NamedBuffer buffers[] = {
-            {"numbers", in}, {"results", results}, {"sums", device->create_buffer(16, "sums")}};
+        const NamedBuffer buffers[] = {{"numbers", in},
+                                       {"results", results},
+                                       {"sums", device->create_buffer(16, "sums")},
+                                       {"wide_sums", device->create_buffer(64, "wide_sums")}};
         const auto kernel = device->compile("vectors/vectors_probe.kernel.h", 0);
         // Ranges that are no multiples of eight, one at a time.
         for (const auto& [begin, count] : {std::pair{0u, 5u}, {5u, 2900u}, {2905u, 96u}})
@@ -53,7 +55,10 @@ TEST(Vectors, TakeOver) {
     const auto device = create_device("cpu");
     const BufferHandle in = upload(*device, numbers, "numbers");
     const BufferHandle results = device->create_buffer(4 * (8 * numbers.size() + 4), "results");
-    const NamedBuffer buffers[] = {{"numbers", in}, {"results", results}, {"sums", device->create_buffer(16, "sums")}};
+    const NamedBuffer buffers[] = {{"numbers", in},
+                                   {"results", results},
+                                   {"sums", device->create_buffer(16, "sums")},
+                                   {"wide_sums", device->create_buffer(64, "wide_sums")}};
     const auto kernel = device->compile("vectors/vectors_probe.kernel.h", 0);
     std::vector<uint32_t> first;
     const auto share = [&] { return device->statistics().invocations.at("vectors/vectors_probe.kernel.h"); };
@@ -112,12 +117,15 @@ LightSource "infinite" "rgb L" [1 1 1]
     expect_same(render_text(scene, settings), render_text(scene, in_vectors(settings)));
 }
 
-class VectorImages : public testing::TestWithParam<std::pair<std::string, std::string>> {};
-using Images = std::vector<std::pair<std::string, std::string>>;
+struct SmallImage {
+    std::string scene, integrator, photon_map;
+};
+using Images = std::vector<SmallImage>;
+class VectorImages : public testing::TestWithParam<SmallImage> {};
 
 Images by_path(const std::vector<std::string>& scenes) {
     Images all;
-    for (const std::string& scene : scenes) all.emplace_back(scene, "path:maxdepth=8");
+    for (const std::string& scene : scenes) all.push_back({scene, "path:maxdepth=8", ""});
     return all;
 }
 
@@ -127,7 +135,13 @@ Images by_every_integrator(const std::vector<std::string>& scenes) {
         for (const char* integrator : {"bdpt:maxdepth=5", "vcm:maxdepth=5", "bpm:maxdepth=5", "light:maxdepth=5",
                                        "mlt:maxdepth=5,bootstrapsamples=1000", "sppm:photonsperiteration=2000",
                                        "ppm:photonsperiteration=2000", "photon_map:photons=2000,gather=4", "ao"})
-            all.emplace_back(scene, integrator);
+            all.push_back({scene, integrator, ""});
+    return all;
+}
+
+Images by_every_photon_map(const std::string& scene) {
+    Images all;
+    for (const std::string& map : photon_maps().names()) all.push_back({scene, "sppm:photonsperiteration=2000", map});
     return all;
 }
 
@@ -138,8 +152,10 @@ std::vector<std::string> other_small_scenes() {
     return others;
 }
 
-std::string name_of(const testing::TestParamInfo<std::pair<std::string, std::string>>& info) {
-    return test_name(info.param.first + " " + info.param.second.substr(0, info.param.second.find(':')));
+std::string name_of(const testing::TestParamInfo<SmallImage>& info) {
+    const SmallImage& image = info.param;
+    return test_name(image.scene + " " + image.integrator.substr(0, image.integrator.find(':')) + " " +
+                     image.photon_map);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, VectorImages, testing::ValuesIn(by_path(scenes_of_all_effects())), name_of);
@@ -149,13 +165,16 @@ INSTANTIATE_TEST_SUITE_P(Integrators, VectorImages, testing::ValuesIn(by_every_i
 INSTANTIATE_TEST_SUITE_P(LongIntegrators, VectorImages,
                          testing::ValuesIn(by_every_integrator({"reference/dielectric-rough", "reference/textures"})),
                          name_of);
+INSTANTIATE_TEST_SUITE_P(PhotonMaps, VectorImages, testing::ValuesIn(by_every_photon_map("reference/point-spot")),
+                         name_of);
 
 TEST_P(VectorImages, AreTheSame) {
     RenderSettings settings;
-    settings.integrator = GetParam().second;
+    settings.integrator = GetParam().integrator;
+    settings.photon_map = GetParam().photon_map;
     settings.samples = 3;
     settings.resolution = {37, 23};
-    const std::string scene = scene_path(GetParam().first);
+    const std::string scene = scene_path(GetParam().scene);
     expect_same(render_file(scene, settings), render_file(scene, in_vectors(settings)));
 }
 

@@ -12,9 +12,10 @@
 namespace lampyris {
 namespace {
 
-// CPU time of the scalar build after which it is worth to load LLVM (.05 s) and look for code that was kept, and after which it is
-// worth to compile (.5 to 5 s): what was short so far is likely to end soon.
-constexpr int64_t kWorthLooking = 200'000'000, kWorthCompiling = 2'000'000'000;
+// CPU time of the scalar build, in ns, after which it is worth to load LLVM (.02 s) and look for code that was kept, and after which it
+// is worth to compile (.5 to 5 s): a rendering is expected to go on for as long as it has taken so far, and vectors save a quarter
+// of that, in this run and in others.
+constexpr int64_t kWorthLooking = 200'000'000, kWorthCompiling = 5'000'000'000;
 
 const VectorCompiler& compiler() {
     static const VectorCompiler* const found = [] {

@@ -90,8 +90,12 @@ Value* Translator::calculate(const Instruction& one, llvm::Type* type, const std
         case spv::OpIsNan: return as_mask(b_.CreateFCmpUNO(x, x));
         case spv::OpConvertUToF: return b_.CreateUIToFP(x, type);
         case spv::OpConvertSToF: return b_.CreateSIToFP(x, type);
-        case spv::OpConvertFToU: return to_integer(x, true);
-        case spv::OpConvertFToS: return to_integer(x, false);
+        case spv::OpConvertFToU:
+            if (type->getScalarSizeInBits() == 64) return b_.CreateFPToUI(x, type);
+            return to_integer(x, true);
+        case spv::OpConvertFToS:
+            if (type->getScalarSizeInBits() == 64) return b_.CreateFPToSI(x, type);
+            return to_integer(x, false);
         case spv::OpUConvert: return b_.CreateZExtOrTrunc(x, type);
         case spv::OpBitcast: return b_.CreateBitCast(x, type);
         case spv::OpCopyObject: return x;
