@@ -110,17 +110,18 @@ struct CameraSample {
 };
 
 // The i-th sample of the window's range, at a pixel of the window. The filter and the lens use CAMERA_DIMENSIONS random
-// numbers.
+// numbers, of the first CAMERA_GROUPS groups of joined pairs.
 CONST uint CAMERA_DIMENSIONS = 4u;
+CONST uint CAMERA_GROUPS = 2u;
 FN CameraSample camera_sample(IN(FilmWindow) w, uvec2 pixel, uint i) {
     CameraSample s;
     uint x = w.x + pixel.x;
     uint y = w.y + pixel.y;
     s.pass = w.first_sample + i;
     s.numbers = sampler_begin(film_pixel_number(pixel, w), s.pass, w.seed, w.sampler_kind);
-    vec2 offset = pixel_filter_sample(sample_2d_at(s.numbers, 0u), s.weight);
+    vec2 offset = pixel_filter_sample(unit_floats(sample_bits_joined_2d_at(s.numbers, 0u, 0u)), s.weight);
     vec2 u_lens = vec2(0.5f);
-    if (CALLED_FOR(EFFECT_DEPTH_OF_FIELD)) u_lens = sample_2d_at(s.numbers, 2u);
+    if (CALLED_FOR(EFFECT_DEPTH_OF_FIELD)) u_lens = unit_floats(sample_bits_joined_2d_at(s.numbers, 2u, 1u));
     s.ray = camera_ray(vec2(float(x) + 0.5f + offset.x, float(y) + 0.5f + offset.y), u_lens);
     s.numbers.dimension = CAMERA_DIMENSIONS;
     return s;

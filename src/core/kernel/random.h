@@ -84,10 +84,10 @@ FN uint scramble_seed(uint seed, uint which) {
     return mixed ^ (mixed >> 15u);
 }
 
-// Scrambles the numbers of a point, given with reversed bits; `way` is the index of the scrambling.
-FN uvec2 scrambled_point(uvec2 reversed, uint seed, uint way) {
-    uint x = scramble_reversed(reversed.x, scramble_seed(seed, 2u * way));
-    uint y = scramble_reversed(reversed.y, scramble_seed(seed, 2u * way + 1u));
+// Scrambles the numbers of a point, given with reversed bits.
+FN uvec2 scrambled_point(uvec2 reversed, uint seed) {
+    uint x = scramble_reversed(reversed.x, scramble_seed(seed, 0u));
+    uint y = scramble_reversed(reversed.y, scramble_seed(seed, 1u));
     return bitfieldReverse(uvec2(x, y));
 }
 
@@ -110,29 +110,67 @@ FN uvec2 sample_bits_2d_at(IN(Sampler) s, uint dimension) {
     if (s.kind == SAMPLER_INDEPENDENT) return independent_2d(s, dimension);
     uint seed = hash_combine(s.key, dimension);
     uint shuffled = bitfieldReverse(scramble_reversed(s.reversed, seed));
-    return scrambled_point(uvec2(shuffled, sobol_second_reversed(shuffled)), seed, 0u);
+    return scrambled_point(uvec2(shuffled, sobol_second_reversed(shuffled)), seed);
 }
 
 FN float sample_1d_at(IN(Sampler) s, uint dimension) { return unit_float(sample_bits_1d_at(s, dimension)); }
 FN vec2 sample_2d_at(IN(Sampler) s, uint dimension) { return unit_floats(sample_bits_2d_at(s, dimension)); }
 
-// The bits of two pairs of numbers, (x, y) and (z, w), for integrands that are the sum of a function of one pair and a
-// function of the other. Both pairs are the same point with two scramblings: each pair is stratified, but not both
-// together. Two separate points would be no better for such integrands. Uses the dimensions of two pairs.
-FN uvec4 sample_bits_2d_2d_at(IN(Sampler) s, uint dimension) {
-    uvec2 a;
-    uvec2 b;
+// ---- Pairs of numbers that are stratified together -------------------------------------------------------------------
+
+// The index of a group's Sobol point. Pairs that are shuffled at random are each stratified, but what depends on two of
+// them together is not sampled better than at random. Here, a group's index is multiplied by a polynomial of its own,
+// modulo 2, where z shifts to the right: (1 + z^a) (1 + z^b) (1 + z^c), with four bits each in the table. This maps every
+// block of 2^k indices to one, so that each pair remains a (0, 2)-sequence. The polynomials were searched for the least
+// variance of smooth functions of the pairs of neighbouring vertices (docs/decisions/joined-pairs.md).
+CONST uint JOINED_GROUPS = 8u;
+FN uint joined_index(uint index, uint group) {
+    uint shifts = group < 4u ? (group < 2u ? 0x08110742u : 0x04310654u) : (group < 6u ? 0x07620753u : 0x08750632u);
+    shifts >>= 16u * (group & 1u);
+    index ^= index >> (shifts & 15u);
+    index ^= index >> ((shifts >> 4u) & 15u);
+    return index ^ (index >> ((shifts >> 8u) & 15u));
+}
+
+// The point of a (0, 2)-sequence in base 2 that is more even than a randomly scrambled one: these constants (a nested
+// scrambling, as any product with an even number) were searched for the least error at edges in the square and in the
+// disk, with 16, 64 and 256 points that are shifted at random (by exclusive or).
+FN uvec2 even_point(uint index) {
+    uint x = index;
+    uint y = sobol_second_reversed(index);
+    x ^= x * 0xa4abe382u;
+    x ^= x * 0x29f88b10u;
+    y ^= y * 0xfb07cf82u;
+    y ^= y * 0x8e1451d0u;
+    return bitfieldReverse(uvec2(x, y));
+}
+
+// Groups beyond the table are shuffled at random.
+FN uvec2 joined_point(IN(Sampler) s, uint dimension, uint group) {
+    if (group < JOINED_GROUPS) return even_point(joined_index(s.index, group));
+    return even_point(bitfieldReverse(scramble_reversed(s.reversed, hash_combine(s.key, dimension))));
+}
+
+// Like sample_bits_2d_at, for pairs that are stratified together with those of other groups. Two pairs that an integrand
+// depends on must not be of one group.
+FN uvec2 sample_bits_joined_2d_at(IN(Sampler) s, uint dimension, uint group) {
+    if (s.kind == SAMPLER_INDEPENDENT) return independent_2d(s, dimension);
+    uvec3 shift = pcg3d(uvec3(s.key, 0x9e3779b9u, dimension));
+    return joined_point(s, dimension, group) ^ uvec2(shift.x, shift.y);
+}
+
+// The bits of two pairs of numbers, (x, y) and (z, w), of one group, for integrands that are the sum of a function of one
+// pair and a function of the other. Both pairs are the same point, shifted differently. Two separate points would be no
+// better for such integrands. Uses the dimensions of two pairs.
+FN uvec4 sample_bits_joined_2d_2d_at(IN(Sampler) s, uint dimension, uint group) {
     if (s.kind == SAMPLER_INDEPENDENT) {
-        a = independent_2d(s, dimension);
-        b = independent_2d(s, dimension + 2u);
-    } else {
-        uint seed = hash_combine(s.key, dimension);
-        uint shuffled = bitfieldReverse(scramble_reversed(s.reversed, seed));
-        uvec2 reversed = uvec2(shuffled, sobol_second_reversed(shuffled));
-        a = scrambled_point(reversed, seed, 0u);
-        b = scrambled_point(reversed, seed, 1u);
+        uvec2 a = independent_2d(s, dimension);
+        uvec2 b = independent_2d(s, dimension + 2u);
+        return uvec4(a.x, a.y, b.x, b.y);
     }
-    return uvec4(a.x, a.y, b.x, b.y);
+    uvec2 point = joined_point(s, dimension, group);
+    uvec3 shift = pcg3d(uvec3(s.key, 0x9e3779b9u, dimension));
+    return uvec4(point.x ^ shift.x, point.y ^ shift.y, point.x ^ shift.z, point.y ^ hash32(shift.z));
 }
 
 // The next number, at the sampler's current dimension.

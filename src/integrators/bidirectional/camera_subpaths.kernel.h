@@ -92,7 +92,8 @@ KERNEL(camera_subpaths) {
         if (path.walk.depth == 0) first = first_hit(s, bsdf_albedo(v.bsdf), distance_of(s.position, camera.ray.origin));
         if (path.walk.depth >= path.walk.maxdepth) break;
         uint dimension = CAMERA_DIMENSIONS + uint(path.walk.depth) * BDPT_VERTEX_DIMENSIONS;
-        uvec4 u = sample_bits_2d_2d_at(camera.numbers, dimension + BDPT_DIRECTION_AND_LIGHT);
+        uvec4 u = sample_bits_joined_2d_2d_at(camera.numbers, dimension + BDPT_DIRECTION_AND_LIGHT,
+                                              CAMERA_GROUPS + uint(path.walk.depth));
         bool joins = !bsdf_is_specular(v.bsdf) && scene[0].light_count > 0u;
         if (joins && pass.eta > 0.0f) last_kept = keep_vertex(path, s, last_kept);
         if (joins && pass.strategies == STRATEGIES_ALL) {

@@ -7,7 +7,7 @@
 BUFFER_RO(1, PathParams, params)
 
 // Each vertex has a fixed number of dimensions, so that a dimension means the same in every sample, whatever the path
-// hit before. Direction and light share one 2D point with two scramblings: no term of the radiance depends on both.
+// hit before. Direction and light share one 2D point, shifted differently: no term of the radiance depends on both.
 CONST uint PATH_DIRECTION_AND_LIGHT = 0u;
 CONST uint PATH_LIGHT_CHOICE = 4u;
 CONST uint PATH_LOBE = 5u;
@@ -35,7 +35,8 @@ FN Spectrum radiance_along(IN(Ray) ray, INOUT(Sampler) numbers, INOUT(FirstHit) 
         if (walk.depth == 0) first = first_hit(s, bsdf_albedo(v.bsdf), distance_of(s.position, ray.origin));
         if (walk.depth >= walk.maxdepth) break;
         uint dimension = CAMERA_DIMENSIONS + uint(walk.depth) * PATH_VERTEX_DIMENSIONS;
-        uvec4 u = sample_bits_2d_2d_at(numbers, dimension + PATH_DIRECTION_AND_LIGHT);
+        uvec4 u = sample_bits_joined_2d_2d_at(numbers, dimension + PATH_DIRECTION_AND_LIGHT,
+                                              CAMERA_GROUPS + uint(walk.depth));
 
         lights_were_sampled = !bsdf_is_specular(v.bsdf);
         if (lights_were_sampled && scene[0].light_count > 0u) {
