@@ -22,7 +22,6 @@ const VectorCompiler& compiler() {
         std::string why;
         void* function = function_of_library_beside("liblampyris_vectors.so", "lampyris_vectors", why);
         if (!function) throw NotTranslated(fmt::format("the library liblampyris_vectors.so cannot be loaded: {}", why));
-        wait_for_background_at_exit();
         return reinterpret_cast<const VectorCompiler* (*)()>(function)();
     }();
     return *found;
@@ -42,7 +41,9 @@ std::shared_ptr<const VectorKernel> compile_in_vectors(const std::string& file, 
 }
 
 LazyVectors::LazyVectors(std::string file, uint64_t effects, std::filesystem::path folder)
-    : job_(std::make_shared<Job>(std::move(file), effects, std::move(folder))) {}
+    : job_(std::make_shared<Job>(std::move(file), effects, std::move(folder))) {
+    wait_for_background_at_exit();
+}
 
 void LazyVectors::spent(int64_t nanoseconds) {
     const int64_t all = spent_.fetch_add(nanoseconds, std::memory_order_relaxed) + nanoseconds;

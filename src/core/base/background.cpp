@@ -1,5 +1,7 @@
 #include "core/base/background.h"
 
+#include <unistd.h>
+
 #include <chrono>
 #include <condition_variable>
 #include <cstdlib>
@@ -47,7 +49,22 @@ void drop_and_wait() {
     b.changed.wait(lock, [&] { return !b.busy; });
 }
 
+// exit destroys the calling thread's objects before any static one. Static objects, in turn, are destroyed in the opposite order of
+// their making: those that a running task made would be the first.
+struct WaitsBeforeStatics {
+    bool starter = gettid() == getpid();
+    ~WaitsBeforeStatics() {
+        if (starter) drop_and_wait();
+    }
+};
+
 }  // namespace
+
+void wait_for_background_at_exit() {
+    thread_local const WaitsBeforeStatics waits;
+    static const bool registered = std::atexit(&drop_and_wait) == 0;
+    (void)waits, (void)registered;
+}
 
 void run_in_background(std::function<void()> task) {
     Background& b = background();
@@ -55,14 +72,11 @@ void run_in_background(std::function<void()> task) {
     if (b.exiting) return;
     if (!b.started) {
         b.started = true;
-        std::atexit(&drop_and_wait);
         std::thread([&b] { b.loop(); }).detach();
     }
     b.tasks.push_back(std::move(task));
     b.changed.notify_all();
 }
-
-void wait_for_background_at_exit() { std::atexit(&drop_and_wait); }
 
 bool background_ends_within(double seconds) {
     Background& b = background();

@@ -5,12 +5,13 @@
 
 namespace lampyris {
 
-// The task must not throw. It may not be done: when the process exits, tasks that have not begun are dropped. Exit waits for the one
-// that has, as it may use objects that are destroyed then.
-void run_in_background(std::function<void()> task);
-
-// Lets exit wait also where libraries that tasks use were loaded after the first task was given: before these are destroyed.
+// Exit waits for the task that has begun. To be called where tasks are given, on the thread that started the process if possible: where
+// that thread ends the process, no static object is destroyed before the task is over, also none that the task makes or that belongs to
+// libraries it loads. Where another thread calls exit, only objects made before this call are safe.
 void wait_for_background_at_exit();
+
+// The task must not throw. It may not be done: when the process exits, tasks that have not begun are dropped.
+void run_in_background(std::function<void()> task);
 
 // Waits until no task is left, or for so many seconds. False if one is left: who does not want to wait any longer has to leave by _exit.
 bool background_ends_within(double seconds);
