@@ -136,7 +136,7 @@ int run(const std::string& file, int width, int height, uint32_t samples, int th
     read_parameters(&params, factory.fields, loaded.settings.integrator.parameters, diagnostics);
     const char* file_of_kernel = "integrators/path/path.radiance.h";
     const CpuKernelFunction scalar = find_cpu_kernel(file_of_kernel, scene.effects.mask());
-    const auto vectors = compile_in_vectors(file_of_kernel, scene.effects.mask(), read_cache_folder({}), false);
+    const auto vectors = compile_in_vectors({file_of_kernel, scene.effects.mask(), read_cache_folder({})}).kernel;
 
     const uint32_t pixels = uint32_t(width) * uint32_t(height);
     std::vector<kernel::FilmPixel> film(pixels);

@@ -1,6 +1,7 @@
 """Kernels in vectors: machine code on disk, and what happens without it."""
 
 import json
+import os
 import shutil
 import signal
 import subprocess
@@ -72,14 +73,27 @@ def test_damaged_code_is_not_run(render, tmp_path):
         assert file.read_bytes() == good
 
 
-def test_code_that_others_could_have_written_is_not_run(render, tmp_path):
+@pytest.mark.parametrize("kind", ["spv", "vectors"])
+def test_code_that_others_could_have_written_is_not_run(render, tmp_path, kind):
     expected, _ = render()
-    file = kept(tmp_path)
+    (file,) = (tmp_path / "cache").glob(f"*.{kind}")
     file.chmod(0o664)
     inode = file.stat().st_ino
     image, _ = render()
     assert image == expected
     assert file.stat().st_ino != inode
+    assert file.stat().st_mode & 0o022 == 0
+
+
+def test_code_is_kept_whatever_the_umask(render, tmp_path):
+    before = os.umask(0)
+    try:
+        render()
+    finally:
+        os.umask(before)
+    inode = kept(tmp_path).stat().st_ino
+    render()
+    assert kept(tmp_path).stat().st_ino == inode
 
 
 def test_a_folder_in_its_place_is_left_alone(render, tmp_path):
@@ -120,6 +134,23 @@ def test_without_the_library(render, program, scene, build_dir, tmp_path):
     assert done.returncode == 2
     assert "liblampyris_vectors.so" in done.stderr
     assert not (tmp_path / "b.pfm").exists()
+
+
+def test_a_library_that_ends_too_early(program, scene, build_dir, tmp_path):
+    """The loader would map parts that are not there."""
+    folder = tmp_path / "bin"
+    folder.mkdir()
+    for file in (build_dir / "lampyris", *build_dir.glob("liblampyris*.so*")):
+        shutil.copy2(file, folder, follow_symlinks=False)
+    for name in ("liblampyris_vectors.so", "liblampyris_formats.so"):
+        whole = (folder / name).read_bytes()
+        (folder / name).write_bytes(whole[: len(whole) // 2])
+    environment = {"LD_LIBRARY_PATH": str(folder)}
+    vectors = ["--set", "backend.vectors=on", "-o", tmp_path / "b.pfm"]
+    for arguments, library in ((vectors, "vectors"), (["-o", tmp_path / "b.png"], "formats")):
+        done = run(folder / "lampyris", scene, *SMALL, *arguments, env=environment)
+        assert done.returncode == 2, done
+        assert f"liblampyris_{library}.so is damaged: it ends too early" in done.stderr
 
 
 def test_an_interruption_does_not_wait_for_the_compiler(program, source_dir, tmp_path):

@@ -2,13 +2,30 @@
 // it loads do.
 #include "core/base/background.h"
 
+#include <dlfcn.h>
 #include <gtest/gtest.h>
+#include <pthread.h>
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <cstdlib>
 #include <thread>
+
+namespace {
+
+std::atomic<bool> no_threads{false};
+
+}  // namespace
+
+// Takes the place of the system's, for libraries, too.
+extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*start)(void*),
+                              void* argument) {
+    if (no_threads) return EAGAIN;
+    static const auto next = reinterpret_cast<decltype(&pthread_create)>(dlsym(RTLD_NEXT, "pthread_create"));
+    return next(thread, attributes, start, argument);
+}
 
 namespace lampyris {
 namespace {
@@ -52,6 +69,17 @@ TEST(Background, TasksThatHaveNotBegunAreDropped) {
             std::exit(0);
         },
         testing::ExitedWithCode(0), "");
+}
+
+TEST(Background, ASystemWithoutThreadsDropsTasks) {
+    no_threads = true;
+    run_in_background([] { made = true; });
+    EXPECT_TRUE(background_ends_within(0));
+    no_threads = false;
+    EXPECT_FALSE(made);
+    run_in_background([] { made = true; });
+    EXPECT_TRUE(background_ends_within(60));
+    EXPECT_TRUE(made);
 }
 
 }  // namespace

@@ -150,11 +150,11 @@ class CpuDevice final : public Device {
     KernelHandle compile(std::string_view file, uint64_t effects) override {
         auto kernel = std::make_shared<CpuKernel>(file, find_cpu_kernel(file, effects));
         if (vectors_ == Switch::automatic)
-            kernel->lazy = std::make_unique<LazyVectors>(std::string(file), effects, cache_);
+            kernel->lazy = std::make_unique<LazyVectors>(VectorRequest{std::string(file), effects, cache_});
         if (vectors_ != Switch::on) return kernel;
         const auto start = Clock::now();
         try {
-            kernel->compiled = compile_in_vectors(std::string(file), effects, cache_, false);
+            kernel->compiled = compile_in_vectors({std::string(file), effects, cache_}).kernel;
         } catch (const NotTranslated& reason) {
             throw MachineError(fmt::format("error: kernel {} cannot run in vectors: {}", file, reason.what()));
         }

@@ -3,11 +3,15 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstring>
-#include <fstream>
+#include <memory>
 #include <span>
 #include <system_error>
 #include <vector>
@@ -39,6 +43,12 @@ uint64_t mix(uint64_t x) {
     return x ^ (x >> 33);
 }
 
+// What is in the cache is run: it must not be what somebody else could have written.
+bool is_trusted(const struct stat& file) {
+    return S_ISREG(file.st_mode) && (file.st_uid == geteuid() || file.st_uid == 0) &&
+           (file.st_mode & (S_IWGRP | S_IWOTH)) == 0;
+}
+
 }  // namespace
 
 void ContentHash::add(std::string_view bytes) {
@@ -65,20 +75,21 @@ std::filesystem::path ShaderCache::path(const ContentHash& key) const {
 
 std::optional<Words> ShaderCache::find(const ContentHash& key) const {
     if (folder_.empty()) return std::nullopt;
-    const std::filesystem::path name = path(key);
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(name, error)) return std::nullopt;  // a pipe could block for ever
-    std::ifstream file(name, std::ios::binary);
+    const int descriptor = open(path(key).c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // does not wait for a pipe
+    if (descriptor < 0) return std::nullopt;
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(fdopen(descriptor, "rb"), &std::fclose);
+    if (!file) {
+        close(descriptor);
+        return std::nullopt;
+    }
+    struct stat status {};
+    if (fstat(descriptor, &status) != 0 || !is_trusted(status)) return std::nullopt;
     Header header;
-    if (!file.read(reinterpret_cast<char*>(&header), sizeof header) || header.magic != kMagic) return std::nullopt;
-    const uint64_t size = std::filesystem::file_size(name, error);
-    if (error || (size - sizeof header) % sizeof(uint32_t) != 0 ||
-        (size - sizeof header) / sizeof(uint32_t) != header.words)
-        return std::nullopt;
+    if (std::fread(&header, sizeof header, 1, file.get()) != 1 || header.magic != kMagic) return std::nullopt;
+    const uint64_t bytes = uint64_t(status.st_size) - sizeof header;
+    if (bytes % sizeof(uint32_t) != 0 || bytes / sizeof(uint32_t) != header.words) return std::nullopt;
     Words words(header.words);
-    if (!file.read(reinterpret_cast<char*>(words.data()),
-                   static_cast<std::streamsize>(header.words * sizeof(uint32_t))))
-        return std::nullopt;
+    if (std::fread(words.data(), sizeof(uint32_t), words.size(), file.get()) != words.size()) return std::nullopt;
     if (checksum_of(key, words) != header.checksum) return std::nullopt;
     return words;
 }
@@ -97,6 +108,9 @@ void ShaderCache::store(const ContentHash& key, const Words& words) const {
     std::copy(content.begin(), content.end(), bytes.begin() + sizeof header);
     try {
         write_file_atomically(name.string(), std::span<const std::byte>(bytes));
+        using std::filesystem::perms;
+        std::filesystem::permissions(name, perms::group_write | perms::others_write,
+                                     std::filesystem::perm_options::remove, error);
     } catch (const MachineError&) {  // the cache only saves time
     }
 }

@@ -1,4 +1,5 @@
-// Compiled kernels on disk (SPIR-V, machine code), keyed by content. A damaged entry, or one that belongs to another key, is found by its checksum and made again.
+// Compiled kernels on disk (SPIR-V, machine code), keyed by content. A damaged entry, or one that belongs to another key, is found by its checksum and made again;
+// so is one that another user could have written.
 #pragma once
 
 #include <array>

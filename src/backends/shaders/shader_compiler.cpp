@@ -141,23 +141,15 @@ Spirv compile_glsl(std::string_view kernel_file, const std::string& source, bool
     return spirv;
 }
 
-Spirv optimize(std::string_view kernel_file, const Spirv& spirv, const ShaderOptions& wanted) {
+Spirv run_passes(std::string_view kernel_file, const Spirv& spirv,
+                 const std::function<void(spvtools::Optimizer&)>& add_passes) {
     spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_2);
     std::string log;
     optimizer.SetMessageConsumer(
         [&log](spv_message_level_t level, const char*, const spv_position_t&, const char* message) {
             if (level <= SPV_MSG_WARNING) log += fmt::format("{}\n", message);
         });
-    // First remove names and the branches that HAS() disables: inlining everything before that takes nine times as long.
-    if (!wanted.names) optimizer.RegisterPass(spvtools::CreateStripDebugInfoPass());
-    optimizer.RegisterPass(spvtools::CreateCCPPass())
-        .RegisterPass(spvtools::CreateDeadBranchElimPass())
-        .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
-        .RegisterPass(spvtools::CreateAggressiveDCEPass(false, true));
-    if (wanted.inlined) {
-        optimizer.RegisterPerformancePasses();
-        optimizer.RegisterPass(spvtools::CreateAggressiveDCEPass(false, true));
-    }
+    add_passes(optimizer);
     spvtools::OptimizerOptions options;
     options.set_run_validator(false);
     Spirv result;
@@ -165,6 +157,24 @@ Spirv optimize(std::string_view kernel_file, const Spirv& spirv, const ShaderOpt
         throw std::logic_error(fmt::format("the SPIR-V optimizer failed on kernel {}: {}", kernel_file, log));
     }
     return result;
+}
+
+// Without names and the branches that HAS() disables: inlining everything before that takes nine times as long.
+Spirv trim(std::string_view kernel_file, const Spirv& spirv, bool names) {
+    return run_passes(kernel_file, spirv, [&](spvtools::Optimizer& optimizer) {
+        if (!names) optimizer.RegisterPass(spvtools::CreateStripDebugInfoPass());
+        optimizer.RegisterPass(spvtools::CreateCCPPass())
+            .RegisterPass(spvtools::CreateDeadBranchElimPass())
+            .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
+            .RegisterPass(spvtools::CreateAggressiveDCEPass(false, true));
+    });
+}
+
+Spirv inline_all(std::string_view kernel_file, const Spirv& spirv) {
+    return run_passes(kernel_file, spirv, [](spvtools::Optimizer& optimizer) {
+        optimizer.RegisterPerformancePasses();
+        optimizer.RegisterPass(spvtools::CreateAggressiveDCEPass(false, true));
+    });
 }
 
 }  // namespace
@@ -201,7 +211,8 @@ std::optional<Spirv> find_shader(std::string_view kernel_file, const ShaderOptio
     return cache.find(key_of(shader_source(kernel_file, options), options));
 }
 
-CompiledShader compile_shader(std::string_view kernel_file, const ShaderOptions& options, const ShaderCache& cache) {
+CompiledShader compile_shader(std::string_view kernel_file, const ShaderOptions& options, const ShaderCache& cache,
+                              const std::function<void(size_t words)>& trimmed) {
     for (const std::string_view part : kernel_parts(kernel_file))
         if (!find_kernel_text(part)) throw std::logic_error(fmt::format("there is no kernel {}", part));
     const std::string source = shader_source(kernel_file, options);
@@ -210,7 +221,11 @@ CompiledShader compile_shader(std::string_view kernel_file, const ShaderOptions&
     Spirv spirv = compile_glsl(kernel_file, source, options.exact);  // keep exact.glsl, not called yet
     if (options.exact) spirv = exact_arithmetic(spirv, options.flush_denormals);
     if (options.precise) spirv = forbid_contraction(spirv);
-    if (options.optimize) spirv = optimize(kernel_file, spirv, options);
+    if (options.optimize) {
+        spirv = trim(kernel_file, spirv, options.names);
+        if (trimmed) trimmed(spirv.size());
+        if (options.inlined) spirv = inline_all(kernel_file, spirv);
+    }
     cache.store(key, spirv);
     return {std::move(spirv), false};
 }

@@ -5,6 +5,7 @@
 #include "backends/shaders/spirv.h"
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -29,8 +30,10 @@ struct CompiledShader {
     bool from_cache = false;
 };
 
-// Throws InputError with glslang's messages (file:line of the kernel's own files) where the kernel is not valid GLSL.
-CompiledShader compile_shader(std::string_view kernel_file, const ShaderOptions& options, const ShaderCache& cache);
+// Throws InputError with glslang's messages (file:line of the kernel's own files) where the kernel is not valid GLSL. `trimmed` is told
+// the number of words that the effects leave, before most of the time is spent; it may throw.
+CompiledShader compile_shader(std::string_view kernel_file, const ShaderOptions& options, const ShaderCache& cache,
+                              const std::function<void(size_t words)>& trimmed = {});
 
 // What compile_shader has put into the cache.
 std::optional<Spirv> find_shader(std::string_view kernel_file, const ShaderOptions& options, const ShaderCache& cache);

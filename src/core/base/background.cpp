@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <deque>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -71,8 +72,12 @@ void run_in_background(std::function<void()> task) {
     const std::lock_guard lock(b.mutex);
     if (b.exiting) return;
     if (!b.started) {
+        try {
+            std::thread([&b] { b.loop(); }).detach();
+        } catch (const std::system_error&) {
+            return;
+        }
         b.started = true;
-        std::thread([&b] { b.loop(); }).detach();
     }
     b.tasks.push_back(std::move(task));
     b.changed.notify_all();

@@ -10,7 +10,8 @@ namespace lampyris {
 // libraries it loads. Where another thread calls exit, only objects made before this call are safe.
 void wait_for_background_at_exit();
 
-// The task must not throw. It may not be done: when the process exits, tasks that have not begun are dropped.
+// The task must not throw. It may not be done: when the process exits, tasks that have not begun are dropped, and so are
+// all while the system has no thread to spare.
 void run_in_background(std::function<void()> task);
 
 // Waits until no task is left, or for so many seconds. False if one is left: who does not want to wait any longer has to leave by _exit.
